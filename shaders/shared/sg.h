@@ -83,8 +83,9 @@ STRANDLIGHT_FN float sgInnerProduct(vec3 axis1, float lambda1, vec3 axis2, float
 // Length of the mean direction of a normalised SG: coth(lambda) - 1 / lambda.
 STRANDLIGHT_FN float sgMeanLength(float lambda)
 {
-    if (lambda < 0.1f) {
-        return lambda * (1.0f / 3.0f - lambda * lambda * (1.0f / 45.0f));
+    if (lambda < 0.5f) {
+        float l2 = lambda * lambda;
+        return lambda * (1.0f / 3.0f - l2 * (1.0f / 45.0f - l2 * (2.0f / 945.0f - l2 * (1.0f / 4725.0f))));
     }
     float e = exp(-2.0f * lambda);
     return (1.0f + e) / (1.0f - e) - 1.0f / lambda;
