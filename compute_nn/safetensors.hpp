@@ -1,0 +1,35 @@
+// Named tensors in a file: the safetensors format (8 bytes of header length, a JSON header, raw
+// little-endian data). https://github.com/huggingface/safetensors
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace strandlight {
+
+struct NamedTensor
+{
+    std::vector<std::uint64_t> shape;
+    std::vector<float> values; // row-major; F16 files are widened
+};
+
+class Safetensors
+{
+public:
+    std::map<std::string, std::string> metadata;
+    std::map<std::string, NamedTensor> tensors;
+
+    // Every length, offset and shape is checked against the file before memory is taken for it.
+    // Throws FileError naming the tensor and the reason. Reads F32 and F16.
+    static Safetensors load(const std::filesystem::path& path);
+
+    // Atomically; F32.
+    void save(const std::filesystem::path& path) const;
+
+    bool has(const std::string& name) const { return tensors.count(name) != 0; }
+};
+
+} // namespace strandlight

@@ -1,0 +1,64 @@
+// Random and awkward convolution shapes, shared by the tests of the twins and of the kernels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compute_nn/conv_desc.hpp"
+#include "shaders/shared/rng.h"
+
+namespace strandlight::test {
+
+struct ConvCase
+{
+    TensorDesc x;
+    Conv2dDesc conv;
+    ConvTranspose2dDesc transpose; // the same numbers, with an output padding
+};
+
+inline ConvCase makeConvCase(TensorDesc x, std::uint32_t out, Extent2 kernel, Extent2 stride,
+                             Extent2 padding, Extent2 outputPadding)
+{
+    return {x,
+            {.in = x.c, .out = out, .kernel = kernel, .stride = stride, .padding = padding},
+            {.in = x.c,
+             .out = out,
+             .kernel = kernel,
+             .stride = stride,
+             .padding = padding,
+             .outputPadding = outputPadding}};
+}
+
+// `count` cases: first the corners that break index arithmetic, then random ones. Channels up to
+// 33, sides up to 13.
+inline std::vector<ConvCase> convCases(std::uint32_t count)
+{
+    std::vector<ConvCase> cases = {
+        makeConvCase({1, 1, 1, 1}, 1, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
+        makeConvCase({2, 33, 1, 1}, 5, {1, 1}, {1, 1}, {0, 0}, {0, 0}), // dense
+        makeConvCase({1, 3, 1, 1}, 33, {3, 3}, {1, 1}, {1, 1}, {0, 0}), // all taps but one outside
+        makeConvCase({3, 7, 7, 13}, 5, {5, 5}, {2, 2}, {2, 2}, {1, 1}), // primes
+        makeConvCase({1, 2, 11, 5}, 17, {3, 2}, {3, 2}, {1, 1},
+                     {2, 1}), // kernel and stride differ by side
+        makeConvCase({1, 1, 4, 4}, 16, {2, 2}, {3, 3}, {0, 0},
+                     {2, 2}), // stride beyond the kernel: holes
+        makeConvCase({2, 5, 6, 4}, 3, {4, 4}, {2, 2}, {3, 3}, {0, 0}), // padding of kernel - 1
+    };
+    for (std::uint32_t i = std::uint32_t(cases.size()); i < count; ++i) {
+        const auto pick = [&](std::uint32_t dimension, std::uint32_t low, std::uint32_t high) {
+            const float u = gpu::uniform3(i, 0, dimension, 7).x;
+            return low + std::uint32_t(u * float(high - low + 1));
+        };
+        const Extent2 kernel = {pick(0, 1, 5), pick(1, 1, 5)};
+        const Extent2 stride = {pick(2, 1, 3), pick(3, 1, 3)};
+        const Extent2 padding = {pick(4, 0, kernel.h / 2), pick(5, 0, kernel.w / 2)};
+        const TensorDesc x = {pick(6, 1, 3), pick(7, 1, 33), pick(8, kernel.h, 13),
+                              pick(9, kernel.w, 13)};
+        cases.push_back(makeConvCase(x, pick(10, 1, 33), kernel, stride, padding,
+                                     {pick(11, 0, stride.h - 1), pick(12, 0, stride.w - 1)}));
+    }
+    cases.resize(count);
+    return cases;
+}
+
+} // namespace strandlight::test
