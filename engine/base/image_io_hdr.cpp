@@ -2,10 +2,10 @@
 // Ward. Real Pixels. Graphics Gems II. 1991; the Radiance file format reference.
 #include "engine/base/image_io_formats.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <string_view>
 
 #include "engine/base/error.hpp"
@@ -39,12 +39,12 @@ public:
 
     std::string_view line()
     {
-        const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + position_;
-        const void* end = std::memchr(begin, '\n', bytes_.size() - position_);
-        if (end == nullptr)
+        const auto rest = bytes_.subspan(position_);
+        const auto end = std::find(rest.begin(), rest.end(), std::uint8_t('\n'));
+        if (end == rest.end())
             fail("the file ends inside the header");
-        std::string_view text(begin,
-                              static_cast<std::size_t>(static_cast<const char*>(end) - begin));
+        std::string_view text(reinterpret_cast<const char*>(rest.data()),
+                              static_cast<std::size_t>(end - rest.begin()));
         position_ += text.size() + 1;
         if (!text.empty() && text.back() == '\r')
             text.remove_suffix(1);
