@@ -1,0 +1,58 @@
+// Instance, device, queue, caches. Headless first; the only place that chooses a device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace strandlight {
+
+struct DeviceInfo
+{
+    std::string name;
+    std::string driver;
+    std::string type;                  // "discrete", "integrated", "cpu", ...
+    std::vector<std::string> refusals; // why this device cannot be used; empty: it can
+};
+
+struct ContextSettings
+{
+    std::string
+        device; // "", an index, or part of a device name; "": discrete before integrated before cpu
+    bool validation =
+        false; // core + synchronization; messages throw when the next submit or the destructor runs
+    bool pipelineCache = true;      // on disk, $XDG_CACHE_HOME/strandlight
+    std::uint64_t memoryBudget = 0; // bytes; 0: 80 % of the device's heap
+};
+
+struct VulkanState; // the Vulkan objects; engine/vk and engine/graph's executor only
+
+class Context
+{
+public:
+    static Context headless(const ContextSettings& settings = {});
+    static std::vector<DeviceInfo> devices();
+
+    Context(Context&&) noexcept;
+    Context& operator=(Context&&) noexcept;
+    ~Context();
+
+    const DeviceInfo& device() const;
+    std::uint32_t subgroupSize() const;
+    std::uint64_t maxStorageBufferBytes() const; // range limit of one binding (128 MiB on lavapipe)
+    std::uint64_t bytesAllocated() const;
+    std::uint64_t peakBytesAllocated() const;
+    std::uint32_t pipelinesCreated() const;
+    // Validation messages so far; 0 unless validation is on.
+    std::uint32_t validationMessages() const;
+    std::string firstValidationMessage() const;
+
+    VulkanState& vulkan() const { return *state_; }
+
+private:
+    explicit Context(std::unique_ptr<VulkanState> state);
+    std::unique_ptr<VulkanState> state_;
+};
+
+} // namespace strandlight
