@@ -179,23 +179,6 @@ Mixture startMixture(double alpha, double cosView)
     return mixture;
 }
 
-// Mean of (1 - v.h)^5 over the cosine-weighted hemisphere: what Fresnel takes from a diffuse
-// surface under even light.
-double diffuseLoss(double cosView)
-{
-    constexpr int kSide = 24;
-    const glm::dvec3 view(std::sqrt(1.0 - cosView * cosView), 0.0, cosView);
-    double sum = 0.0;
-    for (int i = 0; i < kSide; ++i)
-        for (int j = 0; j < kSide; ++j) {
-            const double r = std::sqrt((i + 0.5) / kSide);
-            const double phi = M_PI * (j + 0.5) / kSide;
-            const glm::dvec3 light(r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - r * r));
-            sum += std::pow(1.0 - 0.5 * glm::length(view + light), 5.0);
-        }
-    return sum / (kSide * kSide);
-}
-
 SpecularTable fitTable()
 {
     constexpr std::uint32_t kAlphas = gpu::kSpecularTableAlphas;
@@ -212,7 +195,6 @@ SpecularTable fitTable()
             // degenerates.
             const double cosView = std::max(std::cos(0.5 * M_PI * v / (kViews - 1)), 0.008);
             const Slice slice = sampleSlice(alpha, cosView);
-            const double loss = diffuseLoss(cosView);
             Mixture& mixture = column[v];
             int iterations = kIterations;
             if (a == 0) {
@@ -231,10 +213,7 @@ SpecularTable fitTable()
                 const Component& c = mixture[k];
                 const double sharpness = std::hypot(c.x, c.z);
                 const double scale = std::log1p(sharpness) / std::max(sharpness, 1e-9);
-                const double extra = k == 0   ? slice.scale
-                                     : k == 1 ? slice.bias
-                                     : k == 2 ? loss
-                                              : 0.0;
+                const double extra = k == 0 ? slice.scale : (k == 1 ? slice.bias : 0.0);
                 table.rows[k].at(a, v) = glm::vec4(c.x * scale, c.z * scale, c.weight, extra);
             }
         }

@@ -8,14 +8,12 @@
 #define STRANDLIGHT_SHARED_SG_H
 
 #ifdef __cplusplus
-#include "shaders/shared/gpu_types.h"
+#include "shaders/shared/sampling.h"
 #else
-#include "shared/gpu_types.h"
+#include "shared/sampling.h"
 #endif
 
 STRANDLIGHT_SHARED_BEGIN
-
-STRANDLIGHT_CONST(float) kPi = 3.14159265358979f;
 
 // What fp32 can carry: sharper lobes are narrower than the rounding of their axis.
 STRANDLIGHT_CONST(float) kSgMaxSharpness = 1.0e5f;

@@ -32,7 +32,6 @@ struct SgMixture {
     float amplitude[4];
     float scale;        // directional albedo = f0 scale + f90 bias
     float bias;
-    float diffuseLoss;  // mean of (1 - v.h)^5 over the cosine-weighted hemisphere
 };
 
 // Where (alpha, cosView) lies in the table, [0,1]^2 between texel centres: x by ln alpha, y by view angle.
@@ -54,13 +53,12 @@ STRANDLIGHT_FN void decodeSpecularLobe(vec4 row, STRANDLIGHT_OUT(vec2) axis, STR
     sharpness = min(exp(min(r, 12.0f)) - 1.0f, kSgMaxSharpness);
 }
 
-// Four interpolated table rows (lobe.xy, weight, -) with scale in row0.w, bias in row1.w, diffuseLoss in row2.w.
+// Four interpolated table rows (lobe.xy, weight, -) with scale in row0.w and bias in row1.w.
 STRANDLIGHT_FN SgMixture specularMixture(vec4 row0, vec4 row1, vec4 row2, vec4 row3, vec3 normal, vec3 view)
 {
     SgMixture mixture;
     mixture.scale = row0.w;
     mixture.bias = row1.w;
-    mixture.diffuseLoss = row2.w;
     // The lobes' plane: x away from the viewer, z along the normal. At normal incidence any x will do (they are upright).
     vec3 away = safeNormalize(normal * dot(normal, view) - view, vec3(0.0f));
     for (int k = 0; k < 4; ++k) {
@@ -83,6 +81,14 @@ STRANDLIGHT_FN float schlickWeight(vec3 view, vec3 l)
     float x = clamp(1.0f - 0.5f * length(sum), 0.0f, 1.0f);
     float x2 = x * x;
     return x2 * x2 * x;
+}
+
+// Mean Schlick weight over the cosine-weighted hemisphere: what Fresnel takes from diffuse light that comes from all
+// sides. A fit of our own to quadrature, 6e-6.
+STRANDLIGHT_FN float diffuseSchlickWeight(float cosView)
+{
+    float c = clamp(cosView, 0.0f, 1.0f);
+    return 0.02815949f + c * (-0.07983103f + c * (0.08637031f + c * (-0.04353026f + c * 0.008913155f)));
 }
 
 // Mean Schlick weight over a lobe: where it is sharp, the weight at its axis; where it is wide, the mean over the

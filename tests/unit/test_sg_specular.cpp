@@ -186,6 +186,24 @@ TEST_CASE("sg specular: a constant environment returns the directional albedo")
         }
 }
 
+TEST_CASE("sg specular: what Fresnel takes from diffuse light")
+{
+    constexpr int kSide = 64;
+    for (const double cosView : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+        const dvec3 view(std::sqrt(1.0 - cosView * cosView), 0.0, cosView);
+        double sum = 0.0;
+        for (int i = 0; i < kSide; ++i)
+            for (int j = 0; j < kSide; ++j) {
+                const double r = std::sqrt((i + 0.5) / kSide);
+                const double phi = M_PI * (j + 0.5) / kSide;
+                const dvec3 light(r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - r * r));
+                sum += std::pow(1.0 - glm::dot(view, glm::normalize(view + light)), 5.0);
+            }
+        // 1e-4 of the light: far below what a picture shows.
+        CHECK(std::abs(gpu::diffuseSchlickWeight(float(cosView)) - sum / (kSide * kSide)) < 1e-4);
+    }
+}
+
 TEST_CASE("sg specular: stress values are finite and not negative")
 {
     const vec3 normal(0.0f, 0.0f, 1.0f);
