@@ -1,7 +1,6 @@
 #include "engine/scene/camera.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -59,7 +58,7 @@ struct Hit
 };
 
 // The nearest triangle along a ray. Moeller, Trumbore. Fast, Minimum Storage Ray-Triangle
-// Intersection. 1997. A plain loop: it runs six times per scene.
+// Intersection. 1997. A plain loop: it runs some forty times per scene.
 std::optional<Hit> nearestHit(const Scene& scene, glm::vec3 origin, glm::vec3 direction)
 {
     std::optional<Hit> nearest;
@@ -82,29 +81,43 @@ std::optional<Hit> nearestHit(const Scene& scene, glm::vec3 origin, glm::vec3 di
     return nearest;
 }
 
-// From inside, if surfaces that face the centre lie on all sides of it: back against one end of the
-// longer horizontal side. A solid object also encloses its centre, but shows it back faces.
-std::optional<Camera> insideCamera(const Scene& scene, glm::vec3 centre, glm::vec3 size)
+// How far one sees along a ray before a surface, or the scene's bounds, ends the view.
+float viewDistance(const Scene& scene, glm::vec3 probe, glm::vec3 direction)
 {
-    constexpr std::array<glm::vec3, 6> kAxes = {
-        {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
-    // Off the middle by odd amounts, so that symmetric models do not put an edge in the way.
-    const glm::vec3 probe = centre + size * glm::vec3(0.0137f, 0.0071f, 0.0093f);
-    std::array<float, 6> distance{};
-    int frontCount = 0;
-    for (std::size_t i = 0; i < kAxes.size(); ++i) {
-        const std::optional<Hit> hit = nearestHit(scene, probe, kAxes[i]);
-        if (!hit)
-            return std::nullopt;
-        distance[i] = hit->distance;
-        frontCount += hit->front ? 1 : 0;
+    if (const std::optional<Hit> hit = nearestHit(scene, probe, direction))
+        return hit->distance;
+    return std::max(glm::dot(scene.boundsMax() - probe, direction),
+                    glm::dot(scene.boundsMin() - probe, direction));
+}
+
+// True when most directions from a point meet surfaces that face it: a room, perhaps with windows
+// or an open side. A solid object also encloses its centre, but shows it back faces.
+bool isEnclosed(const Scene& scene, glm::vec3 probe)
+{
+    constexpr int kDirections = 32;
+    int facing = 0;
+    for (int i = 0; i < kDirections; ++i) { // a Fibonacci lattice
+        const float z = 1.0f - (2.0f * float(i) + 1.0f) / float(kDirections);
+        const float phi = 2.39996323f * float(i);
+        const float r = std::sqrt(1.0f - z * z);
+        const glm::vec3 direction(r * std::cos(phi), r * std::sin(phi), z);
+        const std::optional<Hit> hit = nearestHit(scene, probe, direction);
+        facing += hit && hit->front ? 1 : 0;
     }
-    if (frontCount < 4)
-        return std::nullopt;
-    const std::size_t along = distance[0] + distance[1] > distance[4] + distance[5] ? 0 : 4;
+    return facing * 10 >= kDirections * 6;
+}
+
+// With the back against one end of the longer horizontal side, looking along it.
+Camera insideCamera(const Scene& scene, glm::vec3 probe)
+{
+    glm::vec3 axis(0.0f, 0.0f, 1.0f);
+    const glm::vec3 x(1.0f, 0.0f, 0.0f);
+    if (viewDistance(scene, probe, x) + viewDistance(scene, probe, -x) >
+        viewDistance(scene, probe, axis) + viewDistance(scene, probe, -axis))
+        axis = x;
     Camera camera;
-    camera.eye = probe + kAxes[along] * (0.9f * distance[along]);
-    camera.target = probe - kAxes[along] * distance[along + 1];
+    camera.eye = probe + axis * (0.9f * viewDistance(scene, probe, axis));
+    camera.target = probe - axis * viewDistance(scene, probe, -axis);
     camera.verticalFovDegrees = 60.0f;
     return camera;
 }
@@ -118,8 +131,10 @@ Camera defaultCamera(const Scene& scene)
     const glm::vec3 low = scene.boundsMin();
     const glm::vec3 size = scene.boundsMax() - low;
     const glm::vec3 centre = low + 0.5f * size;
-    if (const std::optional<Camera> inside = insideCamera(scene, centre, size))
-        return *inside;
+    // Off the middle by odd amounts, so that symmetric models do not put an edge in the way.
+    const glm::vec3 probe = centre + size * glm::vec3(0.0137f, 0.0071f, 0.0093f);
+    if (isEnclosed(scene, probe))
+        return insideCamera(scene, probe);
 
     Camera camera;
     camera.verticalFovDegrees = 45.0f;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/scene/gltf_document.h"
-#include "engine/scene/image_decode.hpp"
+#include "engine/scene/texture_decode.hpp"
 
 namespace strandlight {
 
@@ -178,9 +178,10 @@ std::int32_t GltfTextureCache::load(int index, const std::string& place)
     else if (encoded.empty())
         document_.fail(name, "the image file is missing or empty");
 
-    Rgba8Image decoded =
-        decodePngOrJpeg(encoded, kMaximumTextureBytes - totalBytes_, document_.path, name);
+    Image8 decoded = decodeTexture(encoded, document_.path.string() + ": " + name);
     totalBytes_ += decoded.rgba.size();
+    if (totalBytes_ > kMaximumTextureBytes)
+        document_.fail(name, "the scene's textures exceed 1 GiB");
     Texture texture;
     texture.name = image.name.empty() ? name : image.name;
     texture.width = decoded.width;
