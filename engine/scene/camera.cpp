@@ -108,13 +108,9 @@ bool isEnclosed(const Scene& scene, glm::vec3 probe)
 }
 
 // With the back against one end of the longer horizontal side, looking along it.
-Camera insideCamera(const Scene& scene, glm::vec3 probe)
+Camera insideCamera(const Scene& scene, glm::vec3 probe, glm::vec3 size)
 {
-    glm::vec3 axis(0.0f, 0.0f, 1.0f);
-    const glm::vec3 x(1.0f, 0.0f, 0.0f);
-    if (viewDistance(scene, probe, x) + viewDistance(scene, probe, -x) >
-        viewDistance(scene, probe, axis) + viewDistance(scene, probe, -axis))
-        axis = x;
+    const glm::vec3 axis = size.x > size.z ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1);
     Camera camera;
     camera.eye = probe + axis * (0.9f * viewDistance(scene, probe, axis));
     camera.target = probe - axis * viewDistance(scene, probe, -axis);
@@ -134,7 +130,7 @@ Camera defaultCamera(const Scene& scene)
     // Off the middle by odd amounts, so that symmetric models do not put an edge in the way.
     const glm::vec3 probe = centre + size * glm::vec3(0.0137f, 0.0071f, 0.0093f);
     if (isEnclosed(scene, probe))
-        return insideCamera(scene, probe);
+        return insideCamera(scene, probe, size);
 
     Camera camera;
     camera.verticalFovDegrees = 45.0f;
