@@ -57,6 +57,11 @@ std::uint32_t RenderGraph::State::use(std::uint32_t pass, std::uint32_t resource
     return writes(usage) ? ++used.version : version;
 }
 
+const Context& RenderGraph::context() const
+{
+    return *state_->context;
+}
+
 BufferId RenderGraph::createBuffer(std::string_view name, std::uint64_t bytes)
 {
     if (bytes == 0)

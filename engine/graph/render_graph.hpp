@@ -43,6 +43,8 @@ public:
     RenderGraph(const RenderGraph&) = delete;
     RenderGraph& operator=(const RenderGraph&) = delete;
 
+    const Context& context() const; // the device, for limits that passes depend on
+
     // --- resources
     // ----------------------------------------------------------------------------------------------
     // Transient: memory exists between first and last use and may be shared with others.

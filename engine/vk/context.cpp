@@ -164,7 +164,12 @@ void VulkanState::submit(const std::function<void(VkCommandBuffer)>& record)
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-    record(commands);
+    try {
+        record(commands);
+    } catch (...) {
+        vkFreeCommandBuffers(device, commandPool, 1, &commands);
+        throw;
+    }
     check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
 
     VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};

@@ -23,6 +23,8 @@ const FeatureRow kRequired[] = {
     {"dynamicRendering (raster passes)", [](DeviceFeatures& f) { return &f.v13.dynamicRendering; }},
     {"scalarBlockLayout (shared structs)",
      [](DeviceFeatures& f) { return &f.v12.scalarBlockLayout; }},
+    {"maintenance4 (local size by specialisation constants)",
+     [](DeviceFeatures& f) { return &f.v13.maintenance4; }},
     {"vertexPipelineStoresAndAtomics",
      [](DeviceFeatures& f) { return &f.core.features.vertexPipelineStoresAndAtomics; }},
     {"fragmentStoresAndAtomics",
