@@ -9,18 +9,9 @@
 #include "engine/scene/scene.hpp"
 #include "engine/vk/context.hpp"
 #include "passes/sg_field.hpp"
+#include "passes/sg_fit_settings.hpp"
 
 namespace strandlight {
-
-enum class BakeFit : std::uint32_t
-{
-    Direct,   // joint optimisation of all texels from a common start
-    Cnn,      // the thesis: one network turns each light-field image into lobes
-    CnnRefine // the network's lobes, then the joint optimisation
-};
-
-const char* toString(BakeFit fit);              // "direct", "cnn", "cnn+refine"
-BakeFit parseBakeFit(const std::string& text);  // throws Error listing the three
 
 struct BakeSettings
 {
@@ -32,7 +23,7 @@ struct BakeSettings
     std::uint32_t bounces = 6;
     std::uint32_t steps = 600;              // of the fit
     std::uint32_t seed = 1;
-    BakeFit fit = BakeFit::Direct;
+    FitMode fit = FitMode::Direct;
     // Where work in progress is kept, and continued from when `resume` is set. Empty: nowhere.
     // An interrupted bake that is resumed gives the same bytes as one that was not.
     std::filesystem::path checkpoint;
