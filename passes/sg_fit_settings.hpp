@@ -1,0 +1,84 @@
+// How lobes are fitted, and what a fit says about itself. Defaults are the measured best; see
+// passes/README.md.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace strandlight {
+
+enum class FitMode : std::uint32_t
+{
+    Direct,   // joint optimisation of all texels from a common start
+    Cnn,      // the thesis: one convolutional encoder for the scene, image in, lobes out
+    CnnRefine // the encoder's lobes as the start of the direct fit
+};
+
+const char* toString(FitMode mode);           // "direct", "cnn", "cnn+refine"
+FitMode fitModeFrom(const std::string& name); // throws Error naming the choices
+
+// Which light of the captured images the lobes stand for.
+enum class LightSet : std::uint32_t
+{
+    Radiance,
+    Environment
+};
+
+enum class FitStart : std::uint32_t
+{
+    Fibonacci, // evenly over the hemisphere, the same for every texel
+    Clusters   // spherical k-means of all texels' images together, the same for every texel
+};
+
+struct FitSettings
+{
+    FitMode mode = FitMode::Direct;
+    std::uint32_t lobes = 8;
+    std::uint32_t steps = 1000;           // of the direct fit
+    std::uint32_t directionsPerStep = 64; // lowered to a divisor of the direction count
+    float learningRate = 0.03f;           // falls linearly to zero over the second half
+    FitStart start = FitStart::Fibonacci;
+    float cornerFraction =
+        0.3f; // of looks at texels; the others are between texels. 1: texels apart
+    float peakSoftening =
+        0.05f; // weight of a direction: 1 / (1 + s * radiance / mean); 0: plain squares
+    float smoothness = 0.02f; // Laplacian over neighbouring texels of a chart
+    std::uint32_t cnnEpochs = 12;
+    std::uint32_t seed = 1;
+};
+
+struct FitStatistics
+{
+    double seconds = 0.0;
+    double firstLoss = 0.0; // mean over cells, relative squared error per direction and channel
+    double lastLoss = 0.0;
+    std::uint64_t skippedSteps = 0;     // lobes whose gradient was not finite
+    std::uint64_t sharpnessAtLimit = 0; // lobes that end at a limit of ln sharpness
+    std::uint64_t amplitudesAtZero = 0; // lobes that end black
+    std::uint64_t raisedScales = 0;     // texels so dark that the floor of the mean radiance holds
+    std::uint64_t texelsWithoutImage = 0; // inside geometry: filled by their neighbours
+};
+
+// Everything that a direct fit needs to go on where it stopped, to the same bytes.
+struct FitState
+{
+    std::uint32_t step = 0;
+    std::vector<float> parameters;    // [lobe * 7 + component, texel]
+    std::vector<float> firstMoments;  // [lobe * 7 + component, texel]
+    std::vector<float> secondMoments; // [lobe * 3 + group, texel]
+    std::uint64_t skippedSteps = 0;
+    double firstLoss = 0.0;
+};
+
+// For bakes that can be interrupted. `save` is called about every `secondsBetweenSaves` and before
+// Interrupted is thrown; `resume` may be null.
+struct FitCheckpoint
+{
+    const FitState* resume = nullptr;
+    std::function<void(const FitState&)> save;
+    double secondsBetweenSaves = 10.0;
+};
+
+} // namespace strandlight

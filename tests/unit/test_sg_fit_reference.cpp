@@ -1,0 +1,256 @@
+// The CPU twin of the direct SG fit: topology, gradient against finite differences, and fits with
+// known answers.
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <doctest/doctest.h>
+
+#include "passes/light_field_baselines.hpp"
+#include "passes/sg_fit_reference.hpp"
+#include "shaders/shared/rgb9e5.h"
+#include "shaders/shared/sg.h"
+#include "shaders/shared/sg_fit_types.h"
+#include "tests/support/synthetic_lightfield.hpp"
+
+using namespace strandlight;
+using test::SyntheticRoom;
+
+namespace {
+
+struct Fitted
+{
+    FitProblem problem;
+    SgField field;
+};
+
+Fitted fit(const CpuLightfield& lightfield, const Atlas& atlas, const FitSettings& settings)
+{
+    Fitted out;
+    out.problem = buildFitProblem(atlas, lightfield, LightSet::Radiance, settings);
+    out.field = fitLobesReference(out.problem, startFit(out.problem, settings.start), settings);
+    return out;
+}
+
+// Largest |reconstruction - image| over texels, directions and channels.
+float worstError(const Fitted& fitted)
+{
+    const LightFieldModel model = freeSgModel(fitted.problem, fitted.field, "fit", 0.0);
+    const LightFieldModel truth = rawImageModel(fitted.problem);
+    std::vector<glm::vec3> image(fitted.problem.directionCount()), expected(image.size());
+    float worst = 0.0f;
+    for (std::uint32_t t = 0; t < fitted.problem.texelCount(); ++t) {
+        model.reconstruct(glm::uvec4(t), glm::vec4(1, 0, 0, 0), image);
+        truth.reconstruct(glm::uvec4(t), glm::vec4(1, 0, 0, 0), expected);
+        for (std::size_t d = 0; d < image.size(); ++d) {
+            const glm::vec3 e = abs(image[d] - expected[d]);
+            worst = std::max({worst, e.x, e.y, e.z});
+        }
+    }
+    return worst;
+}
+
+bool allFinite(const SgField& field)
+{
+    for (const SgLobe& lobe : field.lobes)
+        for (const float v : {lobe.axis.x, lobe.axis.y, lobe.axis.z, lobe.logSharpness,
+                              lobe.amplitude.x, lobe.amplitude.y, lobe.amplitude.z})
+            if (!std::isfinite(v))
+                return false;
+    return true;
+}
+
+} // namespace
+
+TEST_CASE("fit cells stay inside charts and every texel has one")
+{
+    // Two charts side by side, 3 x 2 and 2 x 2, and a lone texel.
+    Atlas atlas;
+    for (const auto [x, y, chart] : {std::array{1u, 1u, 0u},
+                                     {2u, 1u, 0u},
+                                     {3u, 1u, 0u},
+                                     {4u, 1u, 1u},
+                                     {5u, 1u, 1u},
+                                     {1u, 2u, 0u},
+                                     {2u, 2u, 0u},
+                                     {3u, 2u, 0u},
+                                     {4u, 2u, 1u},
+                                     {5u, 2u, 1u},
+                                     {9u, 9u, 2u}}) {
+        AtlasTexel texel;
+        texel.x = x;
+        texel.y = y;
+        texel.chart = chart;
+        atlas.texels.push_back(texel);
+    }
+    const FitCells cells = buildFitCells(atlas);
+    REQUIRE(cells.cellCount == 4);
+    CHECK(cells.cornersOf(0) == glm::uvec4(0, 1, 5, 6));
+    CHECK(cells.cornersOf(1) == glm::uvec4(1, 2, 6, 7));
+    CHECK(cells.cornersOf(2) == glm::uvec4(3, 4, 8, 9));
+    CHECK(cells.cornersOf(3) == glm::uvec4(10));
+    for (std::uint32_t t = 0; t < cells.texelCount; ++t) {
+        int found = 0;
+        for (std::uint32_t c = 0; c < 4; ++c) {
+            const std::uint32_t entry = cells.gather[c * cells.texelCount + t];
+            if (entry == gpu::kSgFitNone)
+                continue;
+            ++found;
+            CHECK((entry & 3u) == c);
+            CHECK(cells.corners[c * cells.cellCount + (entry >> 2)] == t);
+        }
+        CHECK(found >= 1);
+    }
+    CHECK(cells.neighbours[1 * cells.texelCount + 2] ==
+          gpu::kSgFitNone); // +x of texel 2 is another chart
+    CHECK(cells.neighbours[1 * cells.texelCount + 1] == 2);
+    CHECK(cells.neighbours[3 * cells.texelCount + 0] == 5);
+}
+
+TEST_CASE("every direction is looked at once per round")
+{
+    const std::uint32_t perStep = 64, directions = 256;
+    std::vector<int> seen(directions, 0);
+    for (std::uint32_t step = 8; step < 12; ++step)
+        for (std::uint32_t k = 0; k < perStep; ++k)
+            ++seen[gpu::sgFitDirection(k, step, perStep, directions, 7)];
+    for (const int count : seen)
+        CHECK(count == 1);
+}
+
+TEST_CASE("fit gradient equals finite differences")
+{
+    SyntheticRoom room;
+    room.grid = 3;
+    room.size = 8;
+    CpuLightfield lightfield = test::roomLightfield(room);
+    lightfield.valid[4] = 0; // the weights of a missing image are part of the chain rule
+    FitSettings settings;
+    settings.lobes = 3;
+    settings.directionsPerStep = 16;
+    settings.peakSoftening = 0.3f;
+    const FitProblem problem =
+        buildFitProblem(test::gridAtlas(3), lightfield, LightSet::Radiance, settings);
+    FitStateReference state = toReference(startFit(problem, FitStart::Fibonacci));
+    // Texels must differ, or interpolation is not tested.
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+    for (double& p : state.parameters)
+        p += jitter(random);
+    for (state.step = 0; state.step < 6; ++state.step) {
+        const FitCellGradients cells = sgFitCellsReference(problem, state, settings);
+        const std::vector<double> gradient =
+            sgFitGatherReference(problem, cells, state.step, settings);
+        double largest = 0.0;
+        for (const double g : gradient)
+            largest = std::max(largest, std::abs(g));
+        for (std::size_t i = 0; i < state.parameters.size(); ++i) {
+            const double eps = 1.0e-6, centre = state.parameters[i];
+            state.parameters[i] = centre + eps;
+            const double above = sgFitCellsReference(problem, state, settings).loss();
+            state.parameters[i] = centre - eps;
+            const double below = sgFitCellsReference(problem, state, settings).loss();
+            state.parameters[i] = centre;
+            // Central differences in double: rounding ~ 1e-16 * loss / eps.
+            const double numeric = (above - below) / (2.0 * eps);
+            CHECK(std::abs(numeric - gradient[i]) <= 1e-5 * std::abs(numeric) + 1e-7 * largest);
+        }
+    }
+}
+
+TEST_CASE("constant light is kept")
+{
+    const glm::vec3 constant(0.5f, 1.0f, 2.0f);
+    FitSettings settings;
+    settings.steps = 600;
+    settings.directionsPerStep = 16;
+    const Fitted fitted = fit(test::uniformLightfield(3, 8, [&](glm::vec3) { return constant; }),
+                              test::gridAtlas(3), settings);
+    // Eight lobes ripple; 1 % of the brightest channel is the promise.
+    CHECK(worstError(fitted) < 0.02f);
+}
+
+TEST_CASE("one synthetic lobe is found again")
+{
+    const glm::vec3 axis = normalize(glm::vec3(0.4f, -0.3f, 0.8f));
+    const auto radiance = [&](glm::vec3 d) {
+        return glm::vec3(3.0f, 2.0f, 1.0f) * gpu::sgEvaluate(d, axis, 12.0f);
+    };
+    FitSettings settings;
+    settings.lobes = 1;
+    settings.steps = 600;
+    settings.peakSoftening = 0.0f;
+    const Fitted fitted =
+        fit(test::uniformLightfield(2, 16, radiance), test::gridAtlas(2), settings);
+    for (const SgLobe& lobe : fitted.field.lobes) {
+        // RGB9E5 rounds each word by up to 1/1022 of its brightest channel; 256 of them average to
+        // less than 1e-3.
+        CHECK(dot(lobe.axis, axis) > 0.99999f);
+        CHECK(std::exp(lobe.logSharpness) == doctest::Approx(12.0).epsilon(0.01));
+        CHECK(lobe.amplitude.x == doctest::Approx(3.0).epsilon(0.01));
+        CHECK(lobe.amplitude.z == doctest::Approx(1.0).epsilon(0.01));
+    }
+}
+
+TEST_CASE("black light stays black, a firefly stays finite")
+{
+    FitSettings settings;
+    settings.steps = 200;
+    settings.lobes = 4;
+    const Fitted black =
+        fit(test::uniformLightfield(3, 8, [](glm::vec3) { return glm::vec3(0.0f); }),
+            test::gridAtlas(3), settings);
+    CHECK(allFinite(black.field));
+    CHECK(black.problem.raisedScales == 9);
+    CHECK(worstError(black) < 1e-6f);
+
+    CpuLightfield firefly =
+        test::uniformLightfield(3, 8, [](glm::vec3) { return glm::vec3(0.3f); });
+    firefly.radiance[4 * 64 + 20] =
+        gpu::packRgb9e5(glm::vec3(1.0e6f)); // clamped to 65408 by the format
+    const Fitted bright = fit(firefly, test::gridAtlas(3), settings);
+    CHECK(allFinite(bright.field));
+}
+
+TEST_CASE("a texel inside geometry is filled by its neighbours")
+{
+    SyntheticRoom room;
+    room.grid = 5;
+    room.size = 8;
+    CpuLightfield lightfield = test::roomLightfield(room);
+    FitSettings settings;
+    settings.steps = 200;
+    settings.directionsPerStep = 16;
+    // What the dead texel holds must not matter.
+    lightfield.valid[12] = 0;
+    const Fitted first = fit(lightfield, test::gridAtlas(5), settings);
+    for (std::size_t d = 0; d < 64; ++d)
+        lightfield.radiance[12 * 64 + d] = gpu::packRgb9e5(glm::vec3(5000.0f));
+    const Fitted second = fit(lightfield, test::gridAtlas(5), settings);
+    CHECK(allFinite(first.field));
+    for (std::size_t i = 0; i < first.field.lobes.size(); ++i)
+        CHECK(first.field.lobes[i].amplitude == second.field.lobes[i].amplitude);
+}
+
+TEST_CASE("light between texels: the joint fit beats texels apart and fixed directions")
+{
+    const SyntheticRoom room;
+    const Atlas atlas = test::gridAtlas(room.grid);
+    const CpuLightfield lightfield = test::roomLightfield(room);
+    FitSettings joint;
+    joint.steps = 300;
+    FitSettings apart = joint;
+    apart.cornerFraction = 1.0f;
+    apart.smoothness = 0.0f;
+    const Fitted fitted = fit(lightfield, atlas, joint);
+    FitProbes probes = cellCentreProbes(fitted.problem, 1000);
+    test::captureRoomProbes(room, atlas, probes);
+    const FitReport report =
+        compareFits(fitted.problem, probes,
+                    {fixedSgModel(fitted.problem, 8),
+                     freeSgModel(fitted.problem, fit(lightfield, atlas, apart).field, "apart", 0.0),
+                     freeSgModel(fitted.problem, fitted.field, "joint", 0.0)});
+    MESSAGE(report.text());
+    CHECK(report.rows[2].interpolatedRmse <= report.rows[1].interpolatedRmse);
+    CHECK(report.rows[2].interpolatedRmse <= 0.5 * report.rows[0].interpolatedRmse);
+}
