@@ -18,6 +18,142 @@ STRANDLIGHT_CONST(float) kSgTinyAxis = 1e-30f;       // an axis shorter than thi
 
 STRANDLIGHT_CONST(float) kRelativeLossFloor = 0.01f; // (radiance)^2
 
+// What a convolution kernel adds to its sum; bits of specialisation constant 3.
+STRANDLIGHT_CONST(uint) kConvBias = 1u;       // + bias[o]
+STRANDLIGHT_CONST(uint) kConvAccumulate = 2u; // + what the output holds already
+STRANDLIGHT_CONST(uint) kConvDerivative = 4u; // x (saved > 0 ? 1 : slope): back through a leaky relu
+STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; needs 8 lanes or more
+
+// Where a planar tensor, or a range of its channels, lies in a buffer of floats.
+struct TensorView
+{
+    uint offset;      // first float
+    uint imageStride; // floats from image to image
+    uint height;
+    uint width;
+};
+
+struct ConvPush
+{
+    TensorView source;
+    TensorView result;
+    uint savedOffset; // kConvDerivative: a tensor of the result's height and width
+    uint savedImageStride;
+    uint inChannels;
+    uint outChannels;
+    uint weightOffset;
+    uint weightStrideOut; // floats between the weights of neighbouring output channels
+    uint weightStrideIn;
+    uint biasOffset;
+    uint kernelHeight;
+    uint kernelWidth;
+    uint strideHeight;
+    uint strideWidth;
+    uint paddingHeight;
+    uint paddingWidth;
+    uint transposed;
+    uint firstPixel; // this dispatch works on pixels [firstPixel, endPixel) of the [N,H,W] grid of one phase
+    uint endPixel;
+    float slope; // of the activation below zero; 1: no activation
+};
+
+// dWeight[a,b,ky,kx] = sum over n,y,x of small[n,a,y,x] large[n,b, y stride - padding + ky, x stride - padding + kx]
+struct ConvWeightPush
+{
+    TensorView small;
+    TensorView large;
+    uint smallChannels;
+    uint largeChannels;
+    uint kernelHeight;
+    uint kernelWidth;
+    uint strideHeight;
+    uint strideWidth;
+    uint paddingHeight;
+    uint paddingWidth;
+    uint pixels;      // N H W of the small tensor
+    uint stripPixels; // summed by one invocation
+    uint firstStrip;  // of this dispatch
+};
+
+struct ChannelSumPush
+{
+    TensorView tensor;
+    uint channels;
+    uint pixels; // N H W
+    uint stripPixels;
+};
+
+struct ReducePush
+{
+    uint count; // elements of one strip
+    uint strips;
+    uint resultOffset;
+};
+
+struct ElementPush
+{
+    TensorView source;
+    TensorView result;
+    TensorView saved;
+    uint channelPixels; // C H W
+    uint count;         // N C H W
+    float slope;
+};
+
+struct LossPush
+{
+    uint count;
+    uint chunk;        // elements of one invocation
+    uint weightStride; // element i has weight[i / weightStride % weightCount]
+    uint weightCount;
+    float scale;       // 1 / count
+};
+
+struct FiniteCheckPush
+{
+    uint offset;
+    uint count;
+    uint chunk;
+    uint slot;
+    float limit; // larger magnitudes are refused like infinities
+};
+
+struct AdamPush
+{
+    uint count;
+    float stepSize;
+    float inverseRootCorrection2;
+    float beta1;
+    float beta2;
+    float oneMinusBeta1; // rounded from double: 1 - 0.999f loses four digits
+    float oneMinusBeta2;
+    float epsilon;
+};
+
+// Element (n, direction, c) of a radiance tensor is at n 3 D + direction directionStride + c channelStride.
+struct SgMixturePush
+{
+    uint images;
+    uint lobes;
+    uint directions;           // D
+    uint directionImageStride; // floats between the direction lists of two images; 0: all share one
+    uint directionStride;
+    uint channelStride;
+    uint firstImage; // of this dispatch
+};
+
+// Slots of the per-step status; each counts refused values of one tensor.
+STRANDLIGHT_CONST(uint) kStatusSlots = 8u;
+// Counters that live as long as the parameters: steps taken, steps skipped, then the sum of every slot.
+STRANDLIGHT_CONST(uint) kCounterTaken = 0u;
+STRANDLIGHT_CONST(uint) kCounterSkipped = 1u;
+STRANDLIGHT_CONST(uint) kCounterSlots = 2u;
+
 STRANDLIGHT_SHARED_END
+
+#ifdef __cplusplus
+static_assert(sizeof(strandlight::gpu::ConvPush) == 104);
+static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 76);
+#endif
 
 #endif

@@ -1,0 +1,35 @@
+#include "compute_nn/adam.hpp"
+
+#include "engine/base/assert.hpp"
+#include "kernels.gen.hpp"
+
+namespace strandlight {
+
+void addAdamPass(RenderGraph& graph, ParameterIds& parameters, const AdamSettings& settings,
+                 std::uint32_t step)
+{
+    STRANDLIGHT_ASSERT(step > 0);
+    const std::uint32_t count = std::uint32_t(graph.desc(parameters.values).bytes / 4);
+    parameters.checkFinite(graph, "gradient", parameters.gradient, 0, count, kLargestGradient);
+
+    const AdamStep now = adamStepConstants(settings, step);
+    const gpu::AdamPush push{count,
+                             float(now.stepSize),
+                             float(now.inverseRootCorrection2),
+                             float(settings.beta1),
+                             float(settings.beta2),
+                             float(1.0 - settings.beta1),
+                             float(1.0 - settings.beta2),
+                             float(settings.epsilon)};
+    PassBuilder pass = graph.addComputePass("adam");
+    const BufferId gradient = pass.read(parameters.gradient);
+    const BufferId status = pass.read(parameters.status);
+    const BufferId values = parameters.values = pass.write(parameters.values);
+    const BufferId moment1 = parameters.moment1 = pass.write(parameters.moment1);
+    const BufferId moment2 = parameters.moment2 = pass.write(parameters.moment2);
+    const BufferId counters = parameters.counters = pass.write(parameters.counters);
+    pass.dispatch(kernels::adam, {count, 1, 1}, push,
+                  {gradient, values, moment1, moment2, values, moment1, moment2, status, counters});
+}
+
+} // namespace strandlight

@@ -1,0 +1,26 @@
+// Convolution as passes of a graph: forward, and the gradients of input, weight and bias. Twin:
+// reference/conv2d.hpp
+#pragma once
+
+#include "compute_nn/activation_kind.hpp"
+#include "compute_nn/conv_passes.hpp"
+
+namespace strandlight {
+
+// x [N,I,H,W], weight [O,I,Kh,Kw], bias [O] -> y [N,O,Oh,Ow] = activation(conv(x) + bias),
+// overwritten. Of the activations, None, Relu and LeakyRelu can be fused. Throws Error when shapes
+// do not fit.
+TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
+                       const TensorId& x, const LayerWeights& weights, const TensorId& y,
+                       const Activation& activation = {});
+
+// dY [N,O,Oh,Ow] (before the activation) -> dX [N,I,H,W].
+TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
+                             const TensorId& dY, const LayerWeights& weights, const TensorId& dX,
+                             const BackwardEpilogue& epilogue = {});
+
+// dY -> accumulates into the weight gradient [O,I,Kh,Kw] and bias gradient [O]. Saved: x.
+BufferId conv2dBackwardWeight(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
+                              const TensorId& x, const TensorId& dY, const LayerWeights& gradient);
+
+} // namespace strandlight

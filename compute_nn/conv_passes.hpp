@@ -1,0 +1,56 @@
+// The two kernels behind convolutions and transposed convolutions. A transposed convolution is the
+// data gradient of a convolution and the other way round, so four passes share one gather; both
+// weight gradients share one correlation.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "compute_nn/conv_desc.hpp"
+#include "compute_nn/tensor.hpp"
+
+namespace strandlight {
+
+// Weights, bias or their gradients inside a block of floats.
+struct LayerWeights
+{
+    BufferId block;
+    std::uint32_t weightOffset = 0;
+    std::uint32_t biasOffset = 0;
+    bool hasBias = true;
+};
+
+// What a data gradient does besides the sum.
+struct BackwardEpilogue
+{
+    bool accumulate = false; // add to what the gradient tensor holds
+    std::optional<TensorId>
+        activated; // multiply by (activated > 0 ? 1 : slope): back through x's leaky relu
+    float slope = 1.0f;
+};
+
+// result = gather of `source` by the taps; internal to conv2d.cpp and conv_transpose2d.cpp.
+struct GatherConv
+{
+    bool transposed = false;
+    Extent2 kernel, stride, padding;
+    std::uint32_t weightStrideOut = 0; // floats between neighbouring channels of the result
+    std::uint32_t weightStrideIn = 0;  // of the source
+    float slope = 1.0f;
+    bool bias = false;
+    BackwardEpilogue backward;
+};
+TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const GatherConv& conv,
+                           const TensorId& source, const LayerWeights& weights,
+                           const TensorId& result);
+
+// weight gradient[a,b,ky,kx] += sum small[n,a,y,x] large[n,b, y sh - ph + ky, x sw - pw + kx]
+BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
+                            Extent2 stride, Extent2 padding, const TensorId& small,
+                            const TensorId& large, const LayerWeights& gradient);
+
+// bias gradient[c] += sum over n,y,x of dY[n,c,y,x]
+BufferId addChannelSumPass(RenderGraph& graph, std::string_view name, const TensorId& dY,
+                           const LayerWeights& gradient);
+
+} // namespace strandlight

@@ -1,0 +1,27 @@
+// Transposed convolution as passes of a graph. Twin: reference/conv2d.hpp
+#pragma once
+
+#include "compute_nn/activation_kind.hpp"
+#include "compute_nn/conv_passes.hpp"
+
+namespace strandlight {
+
+// x [N,I,H,W], weight [I,O,Kh,Kw], bias [O] -> y [N,O,Oh,Ow] = activation(transposed conv(x) +
+// bias), overwritten.
+TensorId convTranspose2dForward(RenderGraph& graph, std::string_view name,
+                                const ConvTranspose2dDesc& desc, const TensorId& x,
+                                const LayerWeights& weights, const TensorId& y,
+                                const Activation& activation = {});
+
+// dY [N,O,Oh,Ow] (before the activation) -> dX [N,I,H,W].
+TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,
+                                      const ConvTranspose2dDesc& desc, const TensorId& dY,
+                                      const LayerWeights& weights, const TensorId& dX,
+                                      const BackwardEpilogue& epilogue = {});
+
+// dY -> accumulates into the weight gradient [I,O,Kh,Kw] and bias gradient [O]. Saved: x.
+BufferId convTranspose2dBackwardWeight(RenderGraph& graph, std::string_view name,
+                                       const ConvTranspose2dDesc& desc, const TensorId& x,
+                                       const TensorId& dY, const LayerWeights& gradient);
+
+} // namespace strandlight

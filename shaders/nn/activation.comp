@@ -1,0 +1,59 @@
+// Elementwise functions that a convolution does not fuse, forward and backward (reference/activation.hpp).
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/nn_types.h"
+#include "nn/nn_math.glsl"
+
+layout(local_size_x = 32) in;
+layout(constant_id = 0) const uint KIND = 0;     // ActivationKind; 5: ln(1 + x), the encoder's view of radiance
+layout(constant_id = 1) const uint BACKWARD = 0; // 0: result = f(input). 1: result += input f'(saved), saved = f(x)
+
+layout(binding = 0, r32f) uniform readonly imageBuffer inputTensor;
+layout(binding = 1, r32f) uniform readonly imageBuffer saved;
+layout(binding = 2, scalar) buffer Result { float result[]; };
+layout(push_constant, scalar) uniform Push { ElementPush push; };
+
+float forward(float x)
+{
+    if (KIND == 1u)
+        return x > 0.0 ? x : 0.0 * x;
+    if (KIND == 2u)
+        return x > 0.0 ? x : push.slope * x;
+    if (KIND == 3u)
+        return nnSoftplus(x);
+    if (KIND == 4u)
+        return nnSigmoid(x);
+    if (KIND == 5u)
+        return nnLog1p(x < 0.0 ? 0.0 : x);
+    return x;
+}
+
+float derivative(float y)
+{
+    if (KIND == 1u)
+        return y > 0.0 ? 1.0 : 0.0;
+    if (KIND == 2u)
+        return y > 0.0 ? 1.0 : push.slope;
+    if (KIND == 3u)
+        return nnOneMinusExp(y);
+    if (KIND == 4u)
+        return y * (1.0 - y);
+    return 1.0;
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.count)
+        return;
+    uint n = i / push.channelPixels;
+    uint r = i - n * push.channelPixels;
+    float value = imageLoad(inputTensor, int(push.source.offset + n * push.source.imageStride + r)).x;
+    uint at = push.result.offset + n * push.result.imageStride + r;
+    if (BACKWARD == 0u)
+        result[at] = forward(value);
+    else
+        result[at] += value * derivative(imageLoad(saved, int(push.saved.offset + n * push.saved.imageStride + r)).x);
+}

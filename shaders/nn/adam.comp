@@ -1,0 +1,43 @@
+// One optimiser step over a block of parameters; does nothing when a check of this step refused a value.
+// Kingma and Ba. Adam: A Method for Stochastic Optimization. 2015 (reference/adam.hpp)
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/nn_types.h"
+
+layout(local_size_x = 32) in;
+layout(binding = 0, r32f) uniform readonly imageBuffer gradient;
+// Read as texels and written as a buffer: the same memory, each element by one invocation.
+layout(binding = 1, r32f) uniform readonly imageBuffer oldParameters;
+layout(binding = 2, r32f) uniform readonly imageBuffer oldMoment1;
+layout(binding = 3, r32f) uniform readonly imageBuffer oldMoment2;
+layout(binding = 4, scalar) writeonly buffer Parameters { float parameters[]; };
+layout(binding = 5, scalar) writeonly buffer Moment1 { float moment1[]; };
+layout(binding = 6, scalar) writeonly buffer Moment2 { float moment2[]; };
+layout(binding = 7, r32ui) uniform readonly uimageBuffer status;
+layout(binding = 8, scalar) buffer Counters { uint counters[]; };
+layout(push_constant, scalar) uniform Push { AdamPush push; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    bool refused = false;
+    for (int slot = 0; slot < int(kStatusSlots); ++slot) {
+        uint count = imageLoad(status, slot).x;
+        refused = refused || count != 0;
+        if (i == 0)
+            counters[kCounterSlots + slot] += count;
+    }
+    if (i == 0)
+        counters[refused ? kCounterSkipped : kCounterTaken] += 1;
+    if (refused || i >= push.count)
+        return;
+    float g = imageLoad(gradient, int(i)).x;
+    float m = push.beta1 * imageLoad(oldMoment1, int(i)).x + push.oneMinusBeta1 * g;
+    float v = push.beta2 * imageLoad(oldMoment2, int(i)).x + push.oneMinusBeta2 * g * g;
+    moment1[i] = m;
+    moment2[i] = v;
+    parameters[i] = imageLoad(oldParameters, int(i)).x -
+                    push.stepSize * m / (sqrt(v) * push.inverseRootCorrection2 + push.epsilon);
+}

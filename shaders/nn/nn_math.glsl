@@ -1,0 +1,56 @@
+// Elementary functions with a known error. lavapipe's own log is wrong in the fourth digit near 1 and its exp in the
+// sixth for large arguments; these stay within 4e-7 relative everywhere. NaN passes through.
+#ifndef STRANDLIGHT_NN_MATH_GLSL
+#define STRANDLIGHT_NN_MATH_GLSL
+
+// e^x as 2^k e^r, |r| <= ln(2)/2, Taylor to the sixth power. 0 below -87, infinity above 88.7.
+float nnExp(float x)
+{
+    float limited = x > 88.8 ? 88.8 : (x < -88.0 ? -88.0 : x);
+    float k = floor(limited * 1.4426950408889634 + 0.5);
+    precise float high = limited - k * 0.693359375;     // ln 2 in two parts: the first has trailing zeros,
+    precise float r = high + k * 2.12194440054690583e-4; // so the product with k is exact
+    float p = 1.0 + r * (1.0 + r * (0.5 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0))))));
+    // Two factors: 2^k alone leaves the range for k = 128.
+    int half0 = int(k) >> 1;
+    int half1 = int(k) - half0;
+    float value = p * uintBitsToFloat(uint(half0 + 127) << 23) * uintBitsToFloat(uint(half1 + 127) << 23);
+    value = x < -87.0 ? 0.0 : value;
+    value = x > 88.7 ? uintBitsToFloat(0x7f800000u) : value;
+    return x == x ? value : x;
+}
+
+// ln(1 + x) for x >= 0: 1 + x = 2^k (1 + f), ln(1 + f) = 2 atanh(f / (2 + f)).
+float nnLog1p(float x)
+{
+    precise float u = 1.0 + x;
+    precise float lost = x - (u - 1.0); // what the sum above rounded away, for x < 1
+    uint bits = floatBitsToUint(u);
+    int k = int((bits + 0x004afb0du) >> 23) - 127; // 1 + f in [sqrt(1/2), sqrt(2))
+    precise float f = uintBitsToFloat(bits - (uint(k) << 23)) - 1.0;
+    float s = f / (2.0 + f);
+    float z = s * s;
+    float series = 2.0 * s * (1.0 + z * (1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0))))));
+    float value = float(k) * 0.69314718055994531 + (series + (x < 1.0 ? lost / u : 0.0));
+    return (bits & 0x7f800000u) == 0x7f800000u ? x : value;
+}
+
+float nnSoftplus(float x)
+{
+    return (x > 0.0 ? x : 0.0) + nnLog1p(nnExp(-abs(x)));
+}
+
+float nnSigmoid(float x)
+{
+    float e = nnExp(-abs(x));
+    return (x < 0.0 ? e : 1.0) / (1.0 + e);
+}
+
+// 1 - e^-y for y >= 0: the derivative of softplus in terms of its value.
+float nnOneMinusExp(float y)
+{
+    float series = y * (1.0 - y * (0.5 - y * (1.0 / 6.0 - y * (1.0 / 24.0 - y * (1.0 / 120.0)))));
+    return y < 0.1 ? series : 1.0 - nnExp(-y);
+}
+
+#endif
