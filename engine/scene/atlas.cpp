@@ -1,11 +1,13 @@
 #include "engine/scene/atlas.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/log.hpp"
 #include "engine/scene/atlas_charts.hpp"
+#include "engine/scene/atlas_cluster.hpp"
 #include "engine/scene/atlas_layout.hpp"
 #include "engine/scene/atlas_texels.hpp"
 
@@ -14,6 +16,10 @@ namespace strandlight {
 namespace {
 
 constexpr std::uint32_t kMaximumResolution = 4096;
+
+// Small charts cost many texels of gutter. More charts than this leave no room for the large ones:
+// then the smallest share.
+constexpr std::size_t kTexelsPerChart = 32;
 
 Atlas assembleAtlas(AtlasLayout layout, TexelList list, std::uint32_t resolution)
 {
@@ -64,7 +70,9 @@ Atlas buildAtlas(const Scene& scene, const AtlasSettings& settings)
                 " texels: " + reason + "; making charts");
     }
 
-    const std::vector<Chart> charts = buildCharts(mesh);
+    const std::size_t texelCount = std::size_t(settings.resolution) * settings.resolution;
+    const std::vector<Chart> charts = clusterSmallCharts(
+        mesh, buildCharts(mesh), std::max<std::size_t>(1, texelCount / kTexelsPerChart));
     AtlasLayout layout = packCharts(mesh, charts, settings);
     TexelList list = listTexels(mesh, layout, settings.resolution);
     return assembleAtlas(std::move(layout), std::move(list), settings.resolution);

@@ -116,8 +116,7 @@ glm::vec3 ChartBuilder::projectionDirection(const std::vector<std::uint32_t>& tr
     return usable ? mean : seed;
 }
 
-// Fits the rectangle; a chart that fills little of it (a frame around a window) is cut in two
-// across its length.
+// Fits the rectangle; a chart that fills little of it (a frame around a window) is cut in two.
 void ChartBuilder::addChart(std::vector<std::uint32_t> triangles, glm::vec3 direction)
 {
     Chart chart = fitChart(mesh_, std::move(triangles), direction);

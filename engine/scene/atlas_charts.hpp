@@ -20,6 +20,8 @@ struct Chart
     glm::vec2 minimum = glm::vec2(0.0f);
     glm::vec2 size =
         glm::vec2(0.0f); // of the smallest rectangle around the chart; size.x >= size.y
+    bool pinned =
+        false; // takes one texel whatever the scale: its triangles may lie over each other
 };
 
 // Every triangle is in one chart, except for triangles without area that touch no other.

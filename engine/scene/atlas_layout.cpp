@@ -31,6 +31,8 @@ struct Placement
 // Size in texels, rounded so that both borders meet texel centres; 0: all points at one centre.
 glm::uvec2 stepsOf(const Chart& chart, double scale)
 {
+    if (chart.pinned)
+        return glm::uvec2(0);
     return {static_cast<std::uint32_t>(chart.size.x * scale + 0.5),
             static_cast<std::uint32_t>(chart.size.y * scale + 0.5)};
 }
@@ -141,12 +143,16 @@ double findLargestScale(Packer& packer, const std::vector<Chart>& charts,
     double area = 0.0;
     float longest = 0.0f;
     for (const Chart& chart : charts) {
+        if (chart.pinned)
+            continue;
         area += static_cast<double>(chart.size.x) * chart.size.y;
         longest = std::max(longest, chart.size.x);
     }
     // Above either bound the charts cannot fit: their areas, and the length of the longest.
     const double resolution = settings.resolution;
-    double failing = resolution / longest + 1.0 / longest;
+    if (!(longest > 0.0f))
+        return 0.0;
+    double failing = (resolution + 1.0) / longest;
     if (area > 0.0)
         failing = std::min(failing, 2.0 * resolution / std::sqrt(area));
     double fitting = 0.0;

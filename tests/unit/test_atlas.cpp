@@ -1,0 +1,469 @@
+// The atlas: what a bilinear lookup can touch is listed, belongs to one chart, and is sampled on
+// the right triangle.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "engine/base/error.hpp"
+#include "engine/base/log.hpp"
+#include "engine/scene/atlas.hpp"
+#include "engine/scene/scene_loader.hpp"
+#include "shaders/shared/rng.h"
+
+using namespace strandlight;
+
+namespace {
+
+// Rounding of uv to fp32 at 512 texels is 3e-5; lookups give neighbours up to that weight.
+constexpr float kLeastWeight = 2e-3f;
+
+void addTriangle(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c)
+{
+    const auto first = static_cast<std::uint32_t>(scene.vertices.size());
+    const glm::vec3 cross = glm::cross(b - a, c - a);
+    const float length = glm::length(cross);
+    for (const glm::vec3 p : {a, b, c}) {
+        Vertex vertex;
+        vertex.position = p;
+        vertex.normal = length > 0.0f ? cross / length : glm::vec3(0.0f, 1.0f, 0.0f);
+        scene.vertices.push_back(vertex);
+    }
+    scene.triangles.emplace_back(first, first + 1, first + 2);
+    scene.triangleMaterials.push_back(0);
+}
+
+void addQuad(Scene& scene, glm::vec3 corner, glm::vec3 u, glm::vec3 v)
+{
+    addTriangle(scene, corner, corner + u, corner + u + v);
+    addTriangle(scene, corner, corner + u + v, corner + v);
+}
+
+Scene makeCube()
+{
+    Scene scene;
+    const glm::vec3 x(1, 0, 0);
+    const glm::vec3 y(0, 1, 0);
+    const glm::vec3 z(0, 0, 1);
+    addQuad(scene, {0, 0, 0}, y, x);
+    addQuad(scene, {0, 0, 1}, x, y);
+    addQuad(scene, {0, 0, 0}, x, z);
+    addQuad(scene, {0, 1, 0}, z, x);
+    addQuad(scene, {0, 0, 0}, z, y);
+    addQuad(scene, {1, 0, 0}, y, z);
+    return scene;
+}
+
+Scene makeSphere(int rings, int sectors)
+{
+    Scene scene;
+    const auto point = [&](int ring, int sector) {
+        const float theta = 3.14159265f * static_cast<float>(ring) / static_cast<float>(rings);
+        const float phi =
+            6.2831853f * static_cast<float>(sector % sectors) / static_cast<float>(sectors);
+        return glm::vec3(std::sin(theta) * std::cos(phi), std::cos(theta),
+                         std::sin(theta) * std::sin(phi));
+    };
+    for (int r = 0; r < rings; ++r) {
+        for (int s = 0; s < sectors; ++s) {
+            if (r > 0)
+                addTriangle(scene, point(r, s), point(r, s + 1), point(r + 1, s + 1));
+            if (r + 1 < rings)
+                addTriangle(scene, point(r, s), point(r + 1, s + 1), point(r + 1, s));
+        }
+    }
+    for (Vertex& vertex : scene.vertices)
+        vertex.normal = glm::normalize(vertex.position);
+    return scene;
+}
+
+Scene makeSoup(std::uint32_t count, std::uint32_t seed)
+{
+    Scene scene;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto draw = [&](std::uint32_t k) { return gpu::uniform3(i, k, 0, seed); };
+        const glm::vec3 centre = draw(0) * 5.0f;
+        addTriangle(scene, centre + draw(1), centre + draw(2), centre + draw(3));
+    }
+    return scene;
+}
+
+glm::vec2 uvAt(const Atlas& atlas, std::uint32_t triangle, glm::vec2 weights)
+{
+    const AtlasCorner* c = &atlas.corners[std::size_t(triangle) * 3];
+    return c[0].uv * (1.0f - weights.x - weights.y) + c[1].uv * weights.x + c[2].uv * weights.y;
+}
+
+std::vector<std::uint32_t> chartsOfTriangles(const Scene& scene, const Atlas& atlas)
+{
+    std::vector<std::uint32_t> chartOf(scene.triangles.size(), ~0u);
+    for (const AtlasTexel& texel : atlas.texels)
+        chartOf[texel.triangle] = texel.chart;
+    return chartOf;
+}
+
+// Every texel that weighs in a lookup at random surface points is listed, and belongs to one chart
+// only.
+void checkLookups(const Scene& scene, const Atlas& atlas, std::uint32_t pointsPerTriangle)
+{
+    const std::vector<std::uint32_t> map = atlasTexelMap(atlas);
+    const std::vector<std::uint32_t> chartOf = chartsOfTriangles(scene, atlas);
+    std::size_t missing = 0;
+    std::size_t foreign = 0;
+    std::size_t mixed = 0;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+        const glm::uvec3 i = scene.triangles[t];
+        const glm::vec3 a = scene.vertices[i.x].position;
+        if (glm::cross(scene.vertices[i.y].position - a, scene.vertices[i.z].position - a) ==
+            glm::vec3(0.0f))
+            continue;
+        std::uint32_t chart = chartOf[t];
+        for (std::uint32_t k = 0; k < pointsPerTriangle; ++k) {
+            const glm::vec3 r = gpu::uniform3(t, k, 1, 7);
+            const float root = std::sqrt(r.x);
+            // The three corners first, then the inside.
+            const std::array<glm::vec2, 3> corners = {glm::vec2(0), glm::vec2(1, 0),
+                                                      glm::vec2(0, 1)};
+            const glm::vec2 weights =
+                k < 3 ? corners[k] : glm::vec2(root * (1.0f - r.y), root * r.y);
+            const glm::vec2 p = uvAt(atlas, t, weights) - 0.5f;
+            const glm::ivec2 base(glm::floor(p));
+            const glm::vec2 f = p - glm::vec2(base);
+            for (int corner = 0; corner < 4; ++corner) {
+                const glm::ivec2 o(corner & 1, corner >> 1);
+                const float weight = (o.x ? f.x : 1.0f - f.x) * (o.y ? f.y : 1.0f - f.y);
+                if (weight < kLeastWeight)
+                    continue;
+                const glm::ivec2 q = base + o;
+                const int side = static_cast<int>(atlas.resolution);
+                const bool inside = q.x >= 0 && q.y >= 0 && q.x < side && q.y < side;
+                const std::uint32_t texel =
+                    inside ? map[static_cast<std::size_t>(q.y * side + q.x)] : kNoTexel;
+                missing += texel == kNoTexel;
+                if (texel == kNoTexel)
+                    continue;
+                if (chart == ~0u)
+                    chart = atlas.texels[texel].chart;
+                foreign += atlas.texels[texel].chart != chart;
+                mixed += atlas.texels[texel].chart >= atlas.chartCount;
+            }
+        }
+    }
+    CHECK(missing == 0);
+    CHECK(foreign == 0);
+    CHECK(mixed == 0);
+}
+
+// Texels are in order, within their triangle, and sampled at most a texel's diagonal (and the
+// inset) from the centre.
+void checkTexels(const Scene& scene, const Atlas& atlas)
+{
+    REQUIRE(atlas.corners.size() == scene.triangles.size() * 3);
+    REQUIRE(!atlas.texels.empty());
+    for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
+        const AtlasTexel& t = atlas.texels[i];
+        const std::uint32_t index = t.y * atlas.resolution + t.x;
+        if (i > 0)
+            REQUIRE(index > atlas.texels[i - 1].y * atlas.resolution + atlas.texels[i - 1].x);
+        REQUIRE(t.barycentric.x >= 0.0f);
+        REQUIRE(t.barycentric.y >= 0.0f);
+        REQUIRE(t.barycentric.x + t.barycentric.y <= 1.0f + 1e-6f);
+        const glm::vec2 centre(static_cast<float>(t.x) + 0.5f, static_cast<float>(t.y) + 0.5f);
+        REQUIRE(glm::distance(uvAt(atlas, t.triangle, t.barycentric), centre) < 1.42f + 0.1f);
+        const AtlasPoint p = evaluateAtlasTexel(scene, atlas, t);
+        REQUIRE(std::abs(glm::length(p.n) - 1.0f) < 1e-5f);
+        REQUIRE(std::abs(glm::length(p.t) - 1.0f) < 1e-5f);
+        REQUIRE(std::abs(glm::dot(p.n, p.t)) < 1e-5f);
+        REQUIRE(glm::distance(glm::cross(p.n, p.t), p.b) < 1e-5f);
+        REQUIRE(glm::dot(p.geometricNormal, p.n) >= 0.0f);
+    }
+}
+
+void checkAll(const Scene& scene, std::uint32_t resolution, std::uint32_t pointsPerTriangle = 40)
+{
+    CAPTURE(resolution);
+    const Atlas atlas = buildAtlas(scene, {.resolution = resolution, .gutter = 2});
+    checkTexels(scene, atlas);
+    checkLookups(scene, atlas, pointsPerTriangle);
+}
+
+double uvAreaOf(const Atlas& atlas, std::uint32_t t)
+{
+    const AtlasCorner* c = &atlas.corners[std::size_t(t) * 3];
+    const glm::dvec2 ab(c[1].uv - c[0].uv);
+    const glm::dvec2 ac(c[2].uv - c[0].uv);
+    return 0.5 * (ab.x * ac.y - ab.y * ac.x);
+}
+
+double areaOf(const Scene& scene, std::uint32_t t)
+{
+    const glm::uvec3 i = scene.triangles[t];
+    const glm::dvec3 a(scene.vertices[i.x].position);
+    return 0.5 * glm::length(glm::cross(glm::dvec3(scene.vertices[i.y].position) - a,
+                                        glm::dvec3(scene.vertices[i.z].position) - a));
+}
+
+std::string errorOf(const Scene& scene, std::uint32_t resolution)
+{
+    try {
+        buildAtlas(scene, {.resolution = resolution, .gutter = 2});
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string dataPath(const std::string& name)
+{
+    const char* folder = std::getenv("STRANDLIGHT_DATA");
+    return (folder != nullptr ? std::string(folder) : STRANDLIGHT_SOURCE_DIR "/../shared/data") +
+           "/" + name;
+}
+
+} // namespace
+
+TEST_CASE("atlas: cube, six charts, faces keep their shape")
+{
+    const Scene scene = makeCube();
+    for (const std::uint32_t resolution : {16u, 33u, 64u, 256u})
+        checkAll(scene, resolution, 200);
+    const Atlas atlas = buildAtlas(scene, {.resolution = 64, .gutter = 2});
+    CHECK(atlas.chartCount == 6);
+    for (std::uint32_t t = 0; t < 12; ++t) {
+        // Borders are moved to texel centres: a side of n texels changes by half a texel at most.
+        const double expected = areaOf(scene, t) * atlas.texelsPerMetre * atlas.texelsPerMetre;
+        CHECK(uvAreaOf(atlas, t) == doctest::Approx(expected).epsilon(0.07));
+    }
+    CHECK(atlas.texels.size() > 64 * 64 / 2);
+}
+
+TEST_CASE("atlas: two texels of gutter between charts")
+{
+    const Scene scene = makeCube();
+    const Atlas atlas = buildAtlas(scene, {.resolution = 48, .gutter = 2});
+    const std::vector<std::uint32_t> map = atlasTexelMap(atlas);
+    const int side = 48;
+    std::size_t close = 0;
+    for (const AtlasTexel& t : atlas.texels)
+        for (int dy = -2; dy <= 2; ++dy)
+            for (int dx = -2; dx <= 2; ++dx) {
+                const int x = static_cast<int>(t.x) + dx;
+                const int y = static_cast<int>(t.y) + dy;
+                if (x < 0 || y < 0 || x >= side || y >= side)
+                    continue;
+                const std::uint32_t other = map[static_cast<std::size_t>(y * side + x)];
+                close += other != kNoTexel && atlas.texels[other].chart != t.chart;
+            }
+    CHECK(close == 0);
+}
+
+TEST_CASE("atlas: sphere, distortion stays within the cone's bound")
+{
+    const Scene scene = makeSphere(24, 48);
+    checkAll(scene, 64);
+    checkAll(scene, 256);
+    const Atlas atlas = buildAtlas(scene, {.resolution = 256, .gutter = 2});
+    CHECK(atlas.chartCount >= 4);
+    CHECK(atlas.chartCount <= 60);
+    const double scale = double(atlas.texelsPerMetre) * atlas.texelsPerMetre;
+    double sum = 0.0;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+        const double ratio = uvAreaOf(atlas, t) / (areaOf(scene, t) * scale);
+        // cos 50 degrees = 0.64 for the projection; rounding of narrow charts to whole texels takes
+        // or adds the rest.
+        CHECK(ratio > 0.3);
+        CHECK(ratio < 2.0);
+        sum += ratio;
+    }
+    CHECK(sum / static_cast<double>(scene.triangles.size()) == doctest::Approx(0.9).epsilon(0.15));
+}
+
+TEST_CASE("atlas: inside texels map to the surface point under their centre")
+{
+    Scene scene;
+    addQuad(scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    const Atlas atlas = buildAtlas(scene, {.resolution = 32, .gutter = 2});
+    CHECK(atlas.chartCount == 1);
+    REQUIRE(atlas.texels.size() == 32 * 32);
+    const AtlasPoint corner = evaluateAtlasTexel(scene, atlas, atlas.texels[0]);
+    for (const AtlasTexel& t : atlas.texels) {
+        if (t.x == 0 || t.y == 0 || t.x == 31 || t.y == 31)
+            continue;
+        const glm::vec2 centre(static_cast<float>(t.x) + 0.5f, static_cast<float>(t.y) + 0.5f);
+        CHECK(glm::distance(uvAt(atlas, t.triangle, t.barycentric), centre) < 1e-4f);
+        // Neighbouring texels are 2 m / 31 apart along the tangent of growing u.
+        const AtlasPoint p = evaluateAtlasTexel(scene, atlas, t);
+        const float u = glm::dot(p.position - corner.position, p.t);
+        const float v = glm::dot(p.position - corner.position, p.b);
+        CHECK(u ==
+              doctest::Approx(static_cast<float>(t.x) * 2.0f / 31.0f).epsilon(0.02).scale(1.0));
+        CHECK(v ==
+              doctest::Approx(static_cast<float>(t.y) * 2.0f / 31.0f).epsilon(0.02).scale(1.0));
+    }
+    // Border samples lie strictly inside, so they are not in the plane of an adjoining wall.
+    CHECK(std::abs(corner.position.x) < 1.0f - 1e-3f);
+    CHECK(std::abs(corner.position.z) < 1.0f - 1e-3f);
+}
+
+TEST_CASE("atlas: random soups of every size")
+{
+    for (const std::uint32_t count : {1u, 2u, 3u, 17u, 100u, 1000u})
+        checkAll(makeSoup(count, count), 64);
+}
+
+TEST_CASE("atlas: more charts than texels still work, sharing texels by place and direction")
+{
+    const Scene scene = makeSoup(6000, 3);
+    const Atlas atlas = buildAtlas(scene, {.resolution = 64, .gutter = 2});
+    checkTexels(scene, atlas);
+    checkLookups(scene, atlas, 4);
+    CHECK(atlas.chartCount < 4096);
+}
+
+TEST_CASE("atlas: triangles without area are carried along")
+{
+    Scene scene = makeCube();
+    addTriangle(scene, {0, 0, 0}, {0, 0, 0}, {1, 0, 0});
+    addTriangle(scene, {0, 0, 0}, {0.5f, 0, 0}, {1, 0, 0});
+    addTriangle(scene, {7, 7, 7}, {7, 7, 7}, {7, 7, 7});
+    checkAll(scene, 32);
+    Scene empty;
+    addTriangle(empty, {0, 0, 0}, {1, 0, 0}, {2, 0, 0});
+    CHECK(errorOf(empty, 32).find("area") != std::string::npos);
+    CHECK(errorOf(Scene(), 32).find("no triangles") != std::string::npos);
+}
+
+TEST_CASE("atlas: a surface that folds over itself is cut")
+{
+    // A helix of two and a half turns whose normals all point up: a plain projection would cover
+    // itself.
+    Scene scene;
+    const auto point = [](int i, float radius) {
+        const float angle = 0.15f * static_cast<float>(i);
+        return glm::vec3(radius * std::cos(angle), 0.02f * static_cast<float>(i),
+                         -radius * std::sin(angle));
+    };
+    for (int i = 0; i < 105; ++i) {
+        addTriangle(scene, point(i, 1.0f), point(i, 2.0f), point(i + 1, 2.0f));
+        addTriangle(scene, point(i, 1.0f), point(i + 1, 2.0f), point(i + 1, 1.0f));
+    }
+    const Atlas atlas = buildAtlas(scene, {.resolution = 128, .gutter = 2});
+    checkTexels(scene, atlas);
+    checkLookups(scene, atlas, 40);
+    CHECK(atlas.chartCount >= 3);
+    // No two triangles lie over each other: a raster of the uv sees each place once.
+    std::vector<int> hits(512 * 512, 0);
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+        for (std::uint32_t y = 0; y < 512; ++y)
+            for (std::uint32_t x = 0; x < 512; ++x) {
+                const AtlasCorner* c = &atlas.corners[std::size_t(t) * 3];
+                const glm::vec2 p((static_cast<float>(x) + 0.5f) / 4.0f,
+                                  (static_cast<float>(y) + 0.5f) / 4.0f);
+                bool inside = true;
+                for (int e = 0; e < 3 && inside; ++e) {
+                    const glm::vec2 a = c[e].uv;
+                    const glm::vec2 d = c[(e + 1) % 3].uv - a;
+                    inside = (d.x * (p.y - a.y) - d.y * (p.x - a.x)) > 0.02f * glm::length(d);
+                }
+                hits[std::size_t(y) * 512 + x] += inside;
+            }
+    CHECK(*std::max_element(hits.begin(), hits.end()) == 1);
+}
+
+TEST_CASE("atlas: the same scene gives the same atlas")
+{
+    const Scene scene = makeSoup(500, 5);
+    const Atlas a = buildAtlas(scene, {.resolution = 100, .gutter = 2});
+    const Atlas b = buildAtlas(scene, {.resolution = 100, .gutter = 2});
+    REQUIRE(a.texels.size() == b.texels.size());
+    for (std::size_t i = 0; i < a.texels.size(); ++i) {
+        CHECK(a.texels[i].triangle == b.texels[i].triangle);
+        CHECK(a.texels[i].barycentric == b.texels[i].barycentric);
+    }
+    for (std::size_t i = 0; i < a.corners.size(); ++i) {
+        CHECK(a.corners[i].uv == b.corners[i].uv);
+        CHECK(a.corners[i].tangent == b.corners[i].tangent);
+    }
+}
+
+TEST_CASE("atlas: refusals name what is wrong")
+{
+    CHECK(errorOf(makeCube(), 2).find("6 charts") != std::string::npos);
+    CHECK(errorOf(makeCube(), 0).find("resolution of 0") != std::string::npos);
+    CHECK(errorOf(makeCube(), 100000).find("100000") != std::string::npos);
+    Scene broken = makeCube();
+    broken.vertices[5].position.y = std::numeric_limits<float>::quiet_NaN();
+    CHECK(errorOf(broken, 32).find("vertex 5") != std::string::npos);
+    Scene index = makeCube();
+    index.triangles[3].y = 999;
+    CHECK(errorOf(index, 32).find("999") != std::string::npos);
+}
+
+TEST_CASE("atlas: TEXCOORD_1 is used when valid, and refused when it overlaps, leaves the square "
+          "or mixes texels")
+{
+    Scene scene;
+    addQuad(scene, {0, 0, 0}, {0, 0, 1}, {1, 0, 0});
+    addQuad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const std::array<glm::vec2, 6> square = {glm::vec2(0, 0), {1, 0}, {1, 1},
+                                             {0, 0},          {1, 1}, {0, 1}};
+    const auto setUv = [&](glm::vec2 first, glm::vec2 second, float size) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            scene.vertices[i].uv1 = first + square[i] * size;
+            scene.vertices[i + 6].uv1 = second + square[i] * size;
+        }
+    };
+    scene.hasTexCoord1 = true;
+    const auto build = [&] { return buildAtlas(scene, {.resolution = 64, .gutter = 2}); };
+    std::string note;
+    setLogLevel(LogLevel::Info);
+    const LogSink previous = setLogSink([&](LogLevel, const std::string& text) { note = text; });
+
+    setUv({0.02f, 0.02f}, {0.55f, 0.02f}, 0.4f);
+    const Atlas good = build();
+    CHECK(good.usedTexCoord1);
+    CHECK(good.chartCount == 2);
+    checkTexels(scene, good);
+    checkLookups(scene, good, 300);
+    // u runs along the first edge of the quad.
+    CHECK(glm::distance(good.corners[0].tangent, glm::vec3(0, 0, 1)) < 1e-5f);
+    CHECK(glm::distance(good.corners[6].tangent, glm::vec3(1, 0, 0)) < 1e-5f);
+
+    setUv({0.02f, 0.02f}, {0.3f, 0.02f}, 0.4f); // overlap
+    CHECK(!build().usedTexCoord1);
+    CHECK(note.find("share the texel") != std::string::npos);
+    setUv({0.02f, 0.02f}, {0.425f, 0.02f}, 0.4f); // a third of a texel between
+    CHECK(!build().usedTexCoord1);
+    setUv({0.02f, 0.02f}, {0.7f, 0.02f}, 0.4f); // beyond 1
+    CHECK(!build().usedTexCoord1);
+    setUv({0.02f, 0.02f}, {0.55f, 0.02f}, 0.0f); // no area
+    CHECK(!build().usedTexCoord1);
+    setLogSink(previous);
+}
+
+TEST_CASE("atlas: reference scenes")
+{
+    for (const char* name :
+         {"scenes/cornell_lambert.gltf", "scenes/room.glb", "scenes/living_room.glb"}) {
+        if (!std::filesystem::exists(dataPath(name))) {
+            MESSAGE("skipped, absent: " << std::string(name));
+            continue;
+        }
+        CAPTURE(name);
+        const Scene scene = loadScene(dataPath(name));
+        for (const std::uint32_t resolution : {64u, 128u, 256u})
+            checkAll(scene, resolution, 6);
+    }
+}
+
+TEST_CASE("atlas: the built-in room uses more than half of the texels")
+{
+    const Scene scene = loadScene("builtin:room");
+    checkAll(scene, 64);
+    const Atlas atlas = buildAtlas(scene, {.resolution = 128, .gutter = 2});
+    CHECK(atlas.texels.size() > 128 * 128 / 2);
+}
