@@ -15,12 +15,14 @@ int main()
     ImageId picture = graph.createImage("picture", {.width = 256, .height = 256});
     PassBuilder pass = graph.addComputePass("gradient");
     picture = pass.write(picture);
-    pass.dispatch(kernels::gradient, graph.extent(picture), gpu::GradientPush{256, 256, 1.0f}, {picture});
+    pass.dispatch(kernels::gradient, graph.extent(picture), gpu::GradientPush{256, 256, 1.0f},
+                  {picture});
     graph.output(picture); // what reaches no output is culled
 
     graph.setTimings(true);
     graph.run();
     savePng("hello_graph.png", graph.read(picture));
     for (const PassTiming& timing : graph.timings())
-        std::printf("%-12s %.3f ms on %s\n", timing.pass.c_str(), timing.milliseconds, device.device().name.c_str());
+        std::printf("%-12s %.3f ms on %s\n", timing.pass.c_str(), timing.milliseconds,
+                    device.device().name.c_str());
 }

@@ -14,11 +14,13 @@ using namespace strandlight;
 
 namespace {
 
-BufferId addSquarePass(RenderGraph& graph, BufferId values, std::uint32_t count, std::uint32_t groupSize)
+BufferId addSquarePass(RenderGraph& graph, BufferId values, std::uint32_t count,
+                       std::uint32_t groupSize)
 {
     PassBuilder pass = graph.addComputePass("square");
     values = pass.write(values);
-    pass.dispatch(kernels::square_values, {count, 1, 1}, gpu::SquarePush{count}, {values}, {groupSize});
+    pass.dispatch(kernels::square_values, {count, 1, 1}, gpu::SquarePush{count}, {values},
+                  {groupSize});
     return values;
 }
 
@@ -50,13 +52,16 @@ TEST_CASE("images: compute writes, raster samples, the copy is read back")
     ImageId gradient = graph.createImage("gradient", {.width = 37, .height = 21});
     PassBuilder make = graph.addComputePass("gradient");
     gradient = make.write(gradient);
-    make.dispatch(kernels::gradient, graph.extent(gradient), gpu::GradientPush{37, 21, 2.0f}, {gradient});
-    ImageId copy = graph.createImage("copy", {.width = 37, .height = 21, .format = Format::RGBA16F});
+    make.dispatch(kernels::gradient, graph.extent(gradient), gpu::GradientPush{37, 21, 2.0f},
+                  {gradient});
+    ImageId copy =
+        graph.createImage("copy", {.width = 37, .height = 21, .format = Format::RGBA16F});
     PassBuilder draw = graph.addRasterPass("copy");
     draw.sample(gradient);
     copy = draw.color(copy);
-    draw.draw({.vertex = &kernels::full_screen, .fragment = &kernels::sample_image, .depthTest = false}, 3, 1,
-              NoPush{}, {{gradient, Filter::Nearest}});
+    draw.draw(
+        {.vertex = &kernels::full_screen_vert, .fragment = &kernels::sample_image_frag, .depthTest = false},
+        3, 1, NoPush{}, {{gradient, Filter::Nearest}});
     graph.output(copy);
     graph.setTimings(true);
     graph.run();
@@ -97,17 +102,19 @@ TEST_CASE("mistakes at a binding are named: kind, direction, push size, missing 
         build(graph);
         graph.run();
     };
-    CHECK_THROWS_WITH_AS(run([](RenderGraph& graph) {
-                             const float one = 1.0f;
-                             BufferId values = graph.uploadBuffer("values", std::span<const float>(&one, 1));
-                             PassBuilder pass = graph.addComputePass("wrong");
-                             pass.read(values);
-                             pass.keep();
-                             pass.dispatch(kernels::square_values, {1, 1, 1}, gpu::SquarePush{1}, {values}, {1});
-                         }),
-                         "pass 'wrong', kernel square_values, binding 0: the shader may write 'values', the pass only "
-                         "reads it (say `readonly` in the shader, or write() in the pass)",
-                         GraphError);
+    CHECK_THROWS_WITH_AS(
+        run([](RenderGraph& graph) {
+            const float one = 1.0f;
+            BufferId values = graph.uploadBuffer("values", std::span<const float>(&one, 1));
+            PassBuilder pass = graph.addComputePass("wrong");
+            pass.read(values);
+            pass.keep();
+            pass.dispatch(kernels::square_values, {1, 1, 1}, gpu::SquarePush{1}, {values}, {1});
+        }),
+        "pass 'wrong', kernel square_values, binding 0: the shader may write 'values', the pass "
+        "only "
+        "reads it (say `readonly` in the shader, or write() in the pass)",
+        GraphError);
     CHECK_THROWS_AS(run([](RenderGraph& graph) {
                         BufferId values = graph.createBuffer("values", 16);
                         PassBuilder pass = graph.addComputePass("wrong");

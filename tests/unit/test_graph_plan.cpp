@@ -1,4 +1,5 @@
-// The graph's plan is pure data: culling, order, versions, barriers and memory are tested without a device.
+// The graph's plan is pure data: culling, order, versions, barriers and memory are tested without a
+// device.
 #include <doctest/doctest.h>
 
 #include "engine/base/error.hpp"
@@ -25,7 +26,8 @@ std::vector<std::string> names(const GraphPlan& plan)
 TEST_CASE("a pass that nobody reads is culled, with what only it needs")
 {
     RenderGraph graph{RenderGraph::PlanOnly{}};
-    BufferId a = graph.createBuffer("a", 256), b = graph.createBuffer("b", 256), c = graph.createBuffer("c", 256);
+    BufferId a = graph.createBuffer("a", 256), b = graph.createBuffer("b", 256),
+             c = graph.createBuffer("c", 256);
     a = graph.addComputePass("make a").write(a);
     PassBuilder useless = graph.addComputePass("make b from a");
     useless.read(a);
@@ -47,9 +49,10 @@ TEST_CASE("an old version is refused by name of pass and resource")
     const BufferId second = graph.addComputePass("writer").write(first);
     CHECK(second.version == 1);
     PassBuilder late = graph.addComputePass("late");
-    CHECK_THROWS_WITH_AS(late.read(first),
-                         "pass 'late' uses version 0 of 'light', but pass 'writer' has written version 1",
-                         GraphError);
+    CHECK_THROWS_WITH_AS(
+        late.read(first),
+        "pass 'late' uses version 0 of 'light', but pass 'writer' has written version 1",
+        GraphError);
 }
 
 TEST_CASE("reading what nobody wrote, and outputs that nobody writes, are refused")
@@ -61,11 +64,13 @@ TEST_CASE("reading what nobody wrote, and outputs that nobody writes, are refuse
     pass.read(empty);
     out = pass.write(out);
     graph.output(out);
-    CHECK_THROWS_WITH_AS(graph.compile(), "pass 'reader' reads 'empty', which no pass has written", GraphError);
+    CHECK_THROWS_WITH_AS(graph.compile(), "pass 'reader' reads 'empty', which no pass has written",
+                         GraphError);
 
     RenderGraph second{RenderGraph::PlanOnly{}};
     second.output(second.createBuffer("nothing", 16));
-    CHECK_THROWS_WITH_AS(second.compile(), "'nothing' is an output, but no pass writes it", GraphError);
+    CHECK_THROWS_WITH_AS(second.compile(), "'nothing' is an output, but no pass writes it",
+                         GraphError);
 }
 
 TEST_CASE("a pass uses a resource in one way")
@@ -83,8 +88,8 @@ TEST_CASE("dependencies that form a cycle are reported with the passes' names")
     GraphDescription description;
     description.passes = {{"egg", true, {}}, {"hen", true, {}}};
     const std::vector<std::vector<std::uint32_t>> needs = {{1}, {0}};
-    CHECK_THROWS_WITH_AS(orderPasses(description, needs, {true, true}), "passes wait for each other: 'egg', 'hen'",
-                         GraphError);
+    CHECK_THROWS_WITH_AS(orderPasses(description, needs, {true, true}),
+                         "passes wait for each other: 'egg', 'hen'", GraphError);
 }
 
 TEST_CASE("a write waits for every reader of the old contents")
@@ -101,9 +106,11 @@ TEST_CASE("a write waits for every reader of the old contents")
     const GraphPlan& plan = graph.compile();
     CHECK(names(plan) == std::vector<std::string>{"make", "reader", "overwrite"});
     REQUIRE(plan.passes[1].barriers.size() == 1);
-    CHECK(plan.passes[1].barriers[0] == PlannedBarrier{data.index, Usage::ShaderWrite, Usage::ShaderRead, false});
+    CHECK(plan.passes[1].barriers[0] ==
+          PlannedBarrier{data.index, Usage::ShaderWrite, Usage::ShaderRead, false});
     REQUIRE(plan.passes[2].barriers.size() == 1);
-    CHECK(plan.passes[2].barriers[0] == PlannedBarrier{data.index, Usage::ShaderRead, Usage::ShaderWrite, false});
+    CHECK(plan.passes[2].barriers[0] ==
+          PlannedBarrier{data.index, Usage::ShaderRead, Usage::ShaderWrite, false});
 }
 
 TEST_CASE("two reads of one kind share one barrier; a second kind gets its own")
@@ -123,7 +130,8 @@ TEST_CASE("two reads of one kind share one barrier; a second kind gets its own")
     CHECK(plan.passes[1].barriers.size() == 1);
     CHECK(plan.passes[2].barriers.empty());
     REQUIRE(plan.passes[3].barriers.size() == 1);
-    CHECK(plan.passes[3].barriers[0] == PlannedBarrier{data.index, Usage::ShaderWrite, Usage::TransferRead, false});
+    CHECK(plan.passes[3].barriers[0] ==
+          PlannedBarrier{data.index, Usage::ShaderWrite, Usage::TransferRead, false});
 }
 
 TEST_CASE("images get a layout on first use and change it between kinds of reads")
@@ -138,15 +146,19 @@ TEST_CASE("images get a layout on first use and change it between kinds of reads
     loader.read(image);
     loader.keep();
     const GraphPlan& plan = graph.compile();
-    CHECK(plan.passes[0].barriers[0] == PlannedBarrier{image.index, Usage::None, Usage::ShaderWrite, true});
-    CHECK(plan.passes[1].barriers[0] == PlannedBarrier{image.index, Usage::ShaderWrite, Usage::Sample, false});
-    CHECK(plan.passes[2].barriers[0] == PlannedBarrier{image.index, Usage::Sample, Usage::ShaderRead, false});
+    CHECK(plan.passes[0].barriers[0] ==
+          PlannedBarrier{image.index, Usage::None, Usage::ShaderWrite, true});
+    CHECK(plan.passes[1].barriers[0] ==
+          PlannedBarrier{image.index, Usage::ShaderWrite, Usage::Sample, false});
+    CHECK(plan.passes[2].barriers[0] ==
+          PlannedBarrier{image.index, Usage::Sample, Usage::ShaderRead, false});
 }
 
 TEST_CASE("the barrier table: a pair needs one exactly when a write or a layout change is in it")
 {
     const Usage reads[] = {Usage::ShaderRead, Usage::Sample, Usage::DepthRead, Usage::TransferRead};
-    const Usage writers[] = {Usage::ShaderWrite, Usage::ColorAttachment, Usage::DepthAttachment, Usage::TransferWrite};
+    const Usage writers[] = {Usage::ShaderWrite, Usage::ColorAttachment, Usage::DepthAttachment,
+                             Usage::TransferWrite};
     for (const Usage before : writers)
         for (const Usage after : reads) {
             CHECK(needsBarrier(ResourceKind::Buffer, before, after));
@@ -181,7 +193,9 @@ TEST_CASE("a chain of transients shares two pieces of memory")
 TEST_CASE("memory plan: what lives together never overlaps, over random lifetimes")
 {
     std::uint32_t state = 7;
-    const auto random = [&](std::uint32_t n) { return (state = state * 1664525u + 1013904223u) % 65521u % n; };
+    const auto random = [&](std::uint32_t n) {
+        return (state = state * 1664525u + 1013904223u) % 65521u % n;
+    };
     for (int round = 0; round < 50; ++round) {
         std::vector<MemoryRequest> requests;
         for (int i = 0; i < 40; ++i) {
@@ -193,7 +207,8 @@ TEST_CASE("memory plan: what lives together never overlaps, over random lifetime
             CHECK(plan.offsets[a] % requests[a].alignment == 0);
             CHECK(plan.offsets[a] + requests[a].bytes <= plan.bytes);
             for (std::size_t b = 0; b < a; ++b) {
-                const bool together = requests[a].first <= requests[b].last && requests[b].first <= requests[a].last;
+                const bool together =
+                    requests[a].first <= requests[b].last && requests[b].first <= requests[a].last;
                 const bool overlap = plan.offsets[a] < plan.offsets[b] + requests[b].bytes &&
                                      plan.offsets[b] < plan.offsets[a] + requests[a].bytes;
                 CHECK_FALSE((together && overlap));
