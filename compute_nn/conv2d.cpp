@@ -3,6 +3,7 @@
 #include <string>
 
 #include "compute_nn/activation.hpp"
+#include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
 
 namespace strandlight {
@@ -42,8 +43,13 @@ TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Co
                              const TensorId& dY, const LayerWeights& weights, const TensorId& dX,
                              const BackwardEpilogue& epilogue)
 {
-    checkShapes(name, desc, dX.desc, dY.desc);
+    TensorDesc whole = dX.desc;
+    whole.c = desc.in;
+    checkShapes(name, desc, whole, dY.desc);
+    STRANDLIGHT_ASSERT(epilogue.firstInput + dX.desc.c <= desc.in);
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
+    LayerWeights range = weights;
+    range.weightOffset += epilogue.firstInput * taps;
     return addGatherConvPass(graph, name,
                              {.transposed = true,
                               .kernel = desc.kernel,
@@ -52,7 +58,7 @@ TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Co
                               .weightStrideOut = taps,
                               .weightStrideIn = desc.in * taps,
                               .backward = epilogue},
-                             dY, weights, dX);
+                             dY, range, dX);
 }
 
 BufferId conv2dBackwardWeight(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,

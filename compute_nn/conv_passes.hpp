@@ -27,6 +27,8 @@ struct BackwardEpilogue
     std::optional<TensorId>
         activated; // multiply by (activated > 0 ? 1 : slope): back through x's leaky relu
     float slope = 1.0f;
+    std::uint32_t firstInput =
+        0; // dX holds the channels of x from here on; 0 and all: the whole of x
 };
 
 // result = gather of `source` by the taps; internal to conv2d.cpp and conv_transpose2d.cpp.

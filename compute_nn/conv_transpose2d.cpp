@@ -3,6 +3,7 @@
 #include <string>
 
 #include "compute_nn/activation.hpp"
+#include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
 
 namespace strandlight {
@@ -45,8 +46,13 @@ TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,
                                       const LayerWeights& weights, const TensorId& dX,
                                       const BackwardEpilogue& epilogue)
 {
-    checkShapes(name, desc, dX.desc, dY.desc);
+    TensorDesc whole = dX.desc;
+    whole.c = desc.in;
+    checkShapes(name, desc, whole, dY.desc);
+    STRANDLIGHT_ASSERT(epilogue.firstInput + dX.desc.c <= desc.in);
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
+    LayerWeights range = weights;
+    range.weightOffset += epilogue.firstInput * desc.out * taps;
     return addGatherConvPass(graph, name,
                              {.kernel = desc.kernel,
                               .stride = desc.stride,
@@ -54,7 +60,7 @@ TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,
                               .weightStrideOut = desc.out * taps,
                               .weightStrideIn = taps,
                               .backward = epilogue},
-                             dY, weights, dX);
+                             dY, range, dX);
 }
 
 BufferId convTranspose2dBackwardWeight(RenderGraph& graph, std::string_view name,
