@@ -78,6 +78,7 @@ Buffer::Buffer(Context& context, std::uint64_t bytes, std::string name)
     });
 }
 
+Buffer::Buffer() noexcept = default;
 Buffer::Buffer(Buffer&&) noexcept = default;
 Buffer& Buffer::operator=(Buffer&&) noexcept = default;
 Buffer::~Buffer() = default;

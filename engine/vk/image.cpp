@@ -129,6 +129,7 @@ Image::Image(Context& context, const ImageDesc& desc, std::string name)
     });
 }
 
+Image::Image() noexcept = default;
 Image::Image(Image&&) noexcept = default;
 Image& Image::operator=(Image&&) noexcept = default;
 Image::~Image() = default;
