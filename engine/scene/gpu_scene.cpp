@@ -1,87 +1,152 @@
-// Materials and lights in the layout of shaders/shared/scene_types.h.
+#include "engine/scene/gpu_scene.hpp"
 
-#include "engine/scene/texture_pool.hpp"
+#include <algorithm>
+
+#include "engine/scene/emitters.hpp"
+#include "shaders/shared/octahedral.h"
 
 namespace strandlight {
-
-static_assert(sizeof(gpu::GpuMaterial) == gpu::kMaterialTexels * 16);
-static_assert(sizeof(gpu::GpuLight) == 52);
-
 namespace {
 
-gpu::GpuTextureSlot packSlot(const TextureSlot& slot, bool srgb)
+std::uint32_t packDirection(glm::vec3 direction)
 {
-    gpu::GpuTextureSlot packed{};
-    const glm::mat3 rows = glm::transpose(slot.transform);
-    packed.rowU = rows[0];
-    packed.rowV = rows[1];
-    packed.texture = slot.texture < 0 ? -1.0f : float(2 * slot.texture + (srgb ? 1 : 0));
-    packed.texCoord = float(slot.texCoord);
-    return packed;
+    const float squared = glm::dot(direction, direction);
+    if (!(squared > 0.0f))
+        direction = glm::vec3(0.0f, 0.0f, 1.0f);
+    return glm::packSnorm2x16(gpu::octEncode(glm::normalize(direction)) * 2.0f - 1.0f);
 }
 
-gpu::GpuMaterial packMaterial(const Material& material)
+std::uint32_t packTangent(glm::vec4 tangent)
 {
-    gpu::GpuMaterial packed{};
-    packed.baseColor = material.baseColor;
-    packed.emissive = material.emissive;
-    packed.metallic = material.metallic;
-    packed.specularColor = material.specularColor;
-    packed.specular = material.specular;
-    packed.roughness = material.roughness;
-    packed.normalScale = material.normalScale;
-    packed.alphaCutoff = material.alphaCutoff;
-    packed.baseColorTexture = packSlot(material.baseColorTexture, true);
-    packed.metallicRoughnessTexture = packSlot(material.metallicRoughnessTexture, false);
-    packed.normalTexture = packSlot(material.normalTexture, false);
-    packed.emissiveTexture = packSlot(material.emissiveTexture, true);
-    std::uint32_t flags = material.doubleSided ? gpu::kMaterialDoubleSided : 0u;
-    const auto note = [&](const TextureSlot& slot, std::uint32_t bit) {
-        flags |= slot.texture >= 0 ? bit : 0u;
-    };
-    note(material.baseColorTexture, gpu::kMaterialBaseColorTexture);
-    note(material.metallicRoughnessTexture, gpu::kMaterialMetallicRoughnessTexture);
-    note(material.normalTexture, gpu::kMaterialNormalTexture);
-    note(material.emissiveTexture, gpu::kMaterialEmissiveTexture);
-    packed.flags = float(flags);
-    return packed;
+    return (packDirection(glm::vec3(tangent)) & ~1u) | (tangent.w < 0.0f ? 1u : 0u);
 }
 
-gpu::GpuLight packLight(const PunctualLight& light)
+std::vector<glm::uvec4> packCorners(const Scene& scene, const Bvh& bvh, bool texCoord1)
 {
-    gpu::GpuLight packed{};
-    packed.type = static_cast<std::uint32_t>(light.type);
-    packed.position = light.position;
-    packed.direction = light.direction;
-    packed.intensity = light.intensity;
-    packed.range = light.range;
-    if (light.type == LightType::Spot) {
-        // KHR_lights_punctual keeps the cone's edge wider than 0.001 in cosine.
-        const float width = light.innerConeCos - light.outerConeCos;
-        packed.coneScale = 1.0f / (width > 0.001f ? width : 0.001f);
-        packed.coneOffset = -light.outerConeCos * packed.coneScale;
+    std::vector<glm::uvec4> corners;
+    for (const std::uint32_t triangle : bvh.order)
+        for (int k = 0; k < 3; ++k) {
+            const Vertex& v = scene.vertices[scene.triangles[triangle][k]];
+            corners.push_back(glm::uvec4(packDirection(v.normal), glm::floatBitsToUint(v.uv0),
+                                         packTangent(v.tangent)));
+        }
+    for (std::size_t i = 0; texCoord1 && i < bvh.order.size(); ++i) {
+        const glm::uvec3 t = scene.triangles[bvh.order[i]];
+        corners.push_back(glm::uvec4(glm::floatBitsToUint(scene.vertices[t.x].uv1),
+                                     glm::floatBitsToUint(scene.vertices[t.y].uv1)));
+        corners.push_back(glm::uvec4(glm::floatBitsToUint(scene.vertices[t.z].uv1), 0u, 0u));
     }
-    return packed;
+    return corners;
+}
+
+std::vector<glm::uvec4> packLightTable(const Scene& scene, const EmitterTable& emitters,
+                                       const EnvironmentGrid& grid)
+{
+    float environmentProbability = 0.0f;
+    glm::uvec2 size(0u);
+    if (scene.environment) {
+        environmentProbability = emitters.entries.empty() ? 1.0f : 0.5f;
+        size = {scene.environment->latLong.width, scene.environment->latLong.height};
+    }
+    std::vector<glm::uvec4> table{glm::uvec4(std::uint32_t(emitters.entries.size()),
+                                             glm::floatBitsToUint(environmentProbability),
+                                             grid.width, grid.height),
+                                  glm::uvec4(size, 0u, 0u)};
+    table.insert(table.end(), emitters.entries.begin(), emitters.entries.end());
+    return table;
 }
 
 } // namespace
 
-std::vector<gpu::GpuMaterial> packMaterials(const Scene& scene)
+std::uint32_t sceneFeatures(const Scene& scene)
 {
-    std::vector<gpu::GpuMaterial> packed;
-    packed.reserve(scene.materials.size());
-    for (const Material& material : scene.materials)
-        packed.push_back(packMaterial(material));
-    return packed;
+    std::uint32_t features = 0;
+    std::vector<bool> used(scene.materials.size(), false);
+    for (const std::uint32_t material : scene.triangleMaterials)
+        used[material] = true;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        if (!used[i])
+            continue;
+        const Material& m = scene.materials[i];
+        const auto slot = [&](const TextureSlot& s, std::uint32_t feature) {
+            if (s.texture < 0)
+                return;
+            features |= feature;
+            if (s.texCoord == 1)
+                features |= gpu::kFeatureTexCoord1;
+        };
+        slot(m.baseColorTexture, gpu::kFeatureBaseColorTexture);
+        slot(m.metallicRoughnessTexture, gpu::kFeatureMetallicRoughnessTexture);
+        slot(m.normalTexture, gpu::kFeatureNormalTexture);
+        slot(m.emissiveTexture, gpu::kFeatureEmissiveTexture);
+        if (m.alphaCutoff >= 0.0f)
+            features |= gpu::kFeatureAlphaMask;
+        if (m.specular > 0.0f || m.metallic > 0.0f)
+            features |= gpu::kFeatureLayer;
+    }
+    if (!scene.lights.empty())
+        features |= gpu::kFeaturePunctual;
+    if (scene.environment)
+        features |= gpu::kFeatureEnvironment;
+    return features;
 }
 
-std::vector<gpu::GpuLight> packLights(const Scene& scene)
+TracedScene prepareScene(const Scene& scene)
 {
-    std::vector<gpu::GpuLight> packed;
-    packed.reserve(scene.lights.size());
-    for (const PunctualLight& light : scene.lights)
-        packed.push_back(packLight(light));
-    return packed;
+    TracedScene traced;
+    traced.features = sceneFeatures(scene);
+    traced.bvh = buildBvh(scene);
+    traced.textures = packTextures(scene);
+    traced.materials = packMaterials(scene);
+    traced.lights = packLights(scene);
+    traced.corners =
+        packCorners(scene, traced.bvh, (traced.features & gpu::kFeatureTexCoord1) != 0u);
+
+    const EmitterTable emitters = buildEmitterTable(scene, traced.bvh, traced.textures);
+    if (!emitters.entries.empty())
+        traced.features |= gpu::kFeatureEmitters;
+    for (std::size_t slot = 0; slot < emitters.triangleDensity.size(); ++slot)
+        traced.bvh.triangles[slot * 3 + 2].w = glm::floatBitsToUint(emitters.triangleDensity[slot]);
+
+    EnvironmentGrid grid;
+    if (scene.environment) {
+        grid = buildEnvironmentGrid(*scene.environment);
+        traced.environment = scene.environment->latLong.pixels;
+        traced.environment.insert(traced.environment.end(), grid.cells.begin(), grid.cells.end());
+    }
+    traced.lightTable = packLightTable(scene, emitters, grid);
+    return traced;
+}
+
+std::uint32_t GpuScene::bufferCount() const
+{
+    std::uint32_t count = 0;
+    for (const Buffer* buffer :
+         {&nodes, &triangles, &corners, &materials, &lightTable, &textures, &lights, &environment})
+        count += buffer->valid() ? 1u : 0u;
+    return count;
+}
+
+GpuScene uploadScene(Context& context, const Scene& scene)
+{
+    const TracedScene traced = prepareScene(scene);
+    GpuScene device;
+    device.grid = traced.bvh.grid;
+    device.features = traced.features;
+    device.triangleCount = std::uint32_t(traced.bvh.order.size());
+    device.lightCount = std::uint32_t(traced.lights.size());
+    device.nodes = Buffer::from(context, traced.bvh.nodes, "scene nodes");
+    device.triangles = Buffer::from(context, traced.bvh.triangles, "scene triangles");
+    device.corners = Buffer::from(context, traced.corners, "scene corners");
+    device.materials = Buffer::from(context, traced.materials, "scene materials");
+    device.lightTable = Buffer::from(context, traced.lightTable, "scene light table");
+    if (!traced.textures.words.empty())
+        device.textures = Buffer::from(context, traced.textures.words, "scene textures");
+    if (!traced.lights.empty())
+        device.lights = Buffer::from(context, traced.lights, "scene lights");
+    if (!traced.environment.empty())
+        device.environment = Buffer::from(context, traced.environment, "scene environment");
+    return device;
 }
 
 } // namespace strandlight

@@ -1,0 +1,442 @@
+// One segment of a light path: intersect, emission, next-event estimation, scattering.
+// Veach. Robust Monte Carlo Methods for Light Transport Simulation. 1997 (multiple importance sampling)
+//
+// Surfaces reflect on both sides. They emit on both if the material is doubleSided, else from the front: glTF does not
+// show the back of a single-sided surface at all.
+//
+// The including shader has specialisation constant kFeatures (light_types.h) and names its texel buffers:
+//   STRANDLIGHT_BVH_NODE, STRANDLIGHT_BVH_TRIANGLE (lib/trace.glsl), STRANDLIGHT_TEXTURE_WORD, STRANDLIGHT_MATERIAL_TEXEL
+//   (lib/textures.glsl), STRANDLIGHT_CORNER(i), STRANDLIGHT_LIGHT_TABLE(i), STRANDLIGHT_ENVIRONMENT(i), and for punctual
+//   lights a function-like STRANDLIGHT_PUNCTUAL(i) that gives a GpuLight.
+#ifndef STRANDLIGHT_LIB_PATH_GLSL
+#define STRANDLIGHT_LIB_PATH_GLSL
+
+#include "shared/brdf.h"
+#include "shared/environment.h"
+#include "shared/light_types.h"
+#include "shared/octahedral.h"
+#include "shared/rng.h"
+#include "lib/trace.glsl"
+#include "lib/textures.glsl"
+
+const bool kHasEmitters = (kFeatures & kFeatureEmitters) != 0u;
+const bool kHasPunctual = (kFeatures & kFeaturePunctual) != 0u;
+const bool kHasEnvironment = (kFeatures & kFeatureEnvironment) != 0u;
+const bool kHasAlphaMask = (kFeatures & kFeatureAlphaMask) != 0u;
+const bool kHasBaseColorTexture = (kFeatures & kFeatureBaseColorTexture) != 0u;
+const bool kHasMetallicRoughnessTexture = (kFeatures & kFeatureMetallicRoughnessTexture) != 0u;
+const bool kHasNormalTexture = (kFeatures & kFeatureNormalTexture) != 0u;
+const bool kHasEmissiveTexture = (kFeatures & kFeatureEmissiveTexture) != 0u;
+const bool kHasTexCoord1 = (kFeatures & kFeatureTexCoord1) != 0u;
+const bool kHasLayer = (kFeatures & kFeatureLayer) != 0u;
+const bool kHasTexCoords = (kFeatures & (kFeatureBaseColorTexture | kFeatureMetallicRoughnessTexture |
+                                         kFeatureNormalTexture | kFeatureEmissiveTexture)) != 0u;
+
+// Masked surfaces that one ray may pass.
+const uint kMaskLayers = 16u;
+// From this bounce on, paths end by Russian roulette.
+const uint kRouletteBounce = 3u;
+// An invocation starts no path beyond the first mark and abandons one at the second (counted): lavapipe ends all loops
+// silently at 65535 trips.
+const uint kTripsToStart = 12000u;
+const uint kTripsToAbandon = 32000u;
+
+struct PathContext
+{
+    BvhGrid grid;
+    uint triangleCount;
+    uint seed;
+    uint bounces;
+};
+
+struct Path
+{
+    vec3 origin;
+    vec3 direction;
+    vec3 throughput;
+    float pdf;       // density with which the last bounce chose the direction
+    uint bounce;     // reflections so far
+    vec3 radiance;   // gathered so far, without `sky`
+    vec3 sky;        // the environment as the primary ray sees it
+    bool alive;
+    uint primary;    // of the first hit: 0 not yet, 1 front, 2 back of a single-sided, 3 back of a double-sided, 4 none
+    uint item;       // counter of the random numbers: pixel or cell, sample
+    uint sampleIndex;
+    uint trips;      // of this invocation; survives the path
+    uint lost;       // rays or paths given up; survives the path
+};
+
+struct TexCoords
+{
+    vec2 uv0;
+    vec2 uv1;
+};
+
+vec2 uintPairToVec2(uint a, uint b)
+{
+    return vec2(uintBitsToFloat(a), uintBitsToFloat(b));
+}
+
+vec3 unpackDirection(uint word)
+{
+    return octDecode(unpackSnorm2x16(word) * 0.5 + 0.5);
+}
+
+TexCoords fetchTexCoords(uint slot, float u, float v, uint triangleCount)
+{
+    TexCoords t;
+    t.uv0 = vec2(0.0);
+    t.uv1 = vec2(0.0);
+    if (kHasTexCoords) {
+        uvec4 a = STRANDLIGHT_CORNER(slot * 3u);
+        uvec4 b = STRANDLIGHT_CORNER(slot * 3u + 1u);
+        uvec4 c = STRANDLIGHT_CORNER(slot * 3u + 2u);
+        t.uv0 = uintPairToVec2(a.y, a.z) * (1.0 - u - v) + uintPairToVec2(b.y, b.z) * u + uintPairToVec2(c.y, c.z) * v;
+    }
+    if (kHasTexCoord1) {
+        uvec4 ab = STRANDLIGHT_CORNER(triangleCount * 3u + slot * 2u);
+        uvec4 c = STRANDLIGHT_CORNER(triangleCount * 3u + slot * 2u + 1u);
+        t.uv1 = uintPairToVec2(ab.x, ab.y) * (1.0 - u - v) + uintPairToVec2(ab.z, ab.w) * u + uintPairToVec2(c.x, c.y) * v;
+    }
+    return t;
+}
+
+// The nearest surface, or with anyHit any, that its mask does not cut away.
+Hit traceSurface(PathContext context, vec3 origin, vec3 direction, float tMax, bool anyHit)
+{
+    if (!kHasAlphaMask)
+        return traverse(context.grid, origin, direction, 0.0, tMax, anyHit);
+    // Behind a hole the search goes on; that needs the hits in order.
+    float tMin = 0.0;
+    uint rounds = 0u;
+    Hit hit;
+    for (uint layer = 0u; layer < kMaskLayers; ++layer) {
+        hit = traverse(context.grid, origin, direction, tMin, tMax, false);
+        rounds += hit.rounds + 1u;
+        if (hit.slot == kNoHit)
+            break;
+        uint material = fetchTriangle(hit.slot * 3u + 1u).w;
+        float cutoff = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).z;
+        TexCoords t = fetchTexCoords(hit.slot, hit.u, hit.v, context.triangleCount);
+        if (cutoff < 0.0 || evaluateAlpha(material, t.uv0, t.uv1) >= cutoff)
+            break;
+        hit.lost = true; // unless the next layer is solid
+        tMin = hit.t;
+    }
+    hit.rounds = rounds;
+    return hit;
+}
+
+// --- Environment ---------------------------------------------------------------------------------------------------
+
+vec3 fetchEnvironment(ivec2 texel, ivec2 size)
+{
+    int x = texel.x < 0 ? texel.x + size.x : (texel.x >= size.x ? texel.x - size.x : texel.x);
+    int y = clamp(texel.y, 0, size.y - 1);
+    return STRANDLIGHT_ENVIRONMENT(y * size.x + x).xyz;
+}
+
+// Bilinear, like environmentRadiance() on the CPU.
+vec3 environmentRadiance(vec2 uv, ivec2 size)
+{
+    vec2 p = uv * vec2(size) - 0.5;
+    vec2 base = floor(p);
+    vec2 f = p - base;
+    ivec2 t = ivec2(base);
+    vec3 low = mix(fetchEnvironment(t, size), fetchEnvironment(t + ivec2(1, 0), size), f.x);
+    vec3 high = mix(fetchEnvironment(t + ivec2(0, 1), size), fetchEnvironment(t + ivec2(1, 1), size), f.x);
+    return mix(low, high, f.y);
+}
+
+// Density over solid angle of a cell's density over (u, v).
+float environmentPdf(float density, vec3 direction)
+{
+    float sine = sqrt(max(1.0 - direction.y * direction.y, 0.0));
+    return sine > 1e-6 ? density / (2.0 * kPi * kPi * sine) : 0.0;
+}
+
+float environmentDensity(vec2 uv, uvec2 grid, ivec2 size)
+{
+    uvec2 cell = min(uvec2(uv * vec2(grid)), grid - 1u);
+    return STRANDLIGHT_ENVIRONMENT(uint(size.x * size.y) + cell.y * grid.x + cell.x).z;
+}
+
+// --- Light sampling ------------------------------------------------------------------------------------------------
+
+struct LightSample
+{
+    vec3 direction;
+    float distanceTo;
+    vec3 radiance;  // for delta lights: irradiance
+    float pdf;      // over solid angle; for delta lights the probability of the choice
+    bool delta;
+};
+
+vec3 emissionOf(uint material, TexCoords t)
+{
+    uint first = material * kMaterialTexels;
+    vec3 emission = STRANDLIGHT_MATERIAL_TEXEL(first + 1u).xyz;
+    if (kHasEmissiveTexture) {
+        uint flags = uint(STRANDLIGHT_MATERIAL_TEXEL(first + 3u).w);
+        if ((flags & kMaterialEmissiveTexture) != 0u)
+            emission *= sampleSlot(first + 10u, t.uv0, t.uv1, kFullResolution).xyz;
+    }
+    return emission;
+}
+
+LightSample sampleEmitter(PathContext context, uvec4 header, vec3 position, vec3 uniforms, float probability)
+{
+    AliasDraw draw = drawAlias(uniforms.z, header.x);
+    uvec4 entry = STRANDLIGHT_LIGHT_TABLE(kLightTableHeader + draw.column);
+    if (draw.rest >= uintBitsToFloat(entry.x))
+        entry = STRANDLIGHT_LIGHT_TABLE(kLightTableHeader + entry.y);
+    bool punctual = kHasPunctual && (entry.z & kPunctualBit) != 0u;
+    uint slot = punctual ? 0u : entry.z;
+
+    uvec4 c0 = fetchTriangle(slot * 3u);
+    uvec4 c1 = fetchTriangle(slot * 3u + 1u);
+    uvec4 c2 = fetchTriangle(slot * 3u + 2u);
+    vec2 w = sampleTriangle(uniforms.x, uniforms.y);
+    vec3 p0 = positionOf(c0);
+    vec3 e1 = positionOf(c1) - p0;
+    vec3 e2 = positionOf(c2) - p0;
+    vec3 normal = cross(e1, e2);
+    normal *= inversesqrt(max(dot(normal, normal), 1e-36));
+    vec3 offset = p0 + e1 * w.x + e2 * w.y - position;
+    float squared = max(dot(offset, offset), 1e-30);
+
+    LightSample light;
+    light.distanceTo = sqrt(squared);
+    light.direction = offset / light.distanceTo;
+    float cosine = -dot(normal, light.direction);
+    uint flags = uint(STRANDLIGHT_MATERIAL_TEXEL(c1.w * kMaterialTexels + 3u).w);
+    bool shines = cosine > 0.0 || (flags & kMaterialDoubleSided) != 0u;
+    vec3 emission = emissionOf(c1.w, fetchTexCoords(slot, w.x, w.y, context.triangleCount));
+    light.radiance = shines ? emission : vec3(0.0);
+    float density = uintBitsToFloat(c2.w) * squared / max(abs(cosine), 1e-9);
+    light.pdf = probability * (abs(cosine) > 1e-9 ? density : 0.0);
+    light.delta = false;
+    if (punctual) {
+        light.radiance = punctualIrradiance(STRANDLIGHT_PUNCTUAL(entry.z & ~kPunctualBit), position, light.direction,
+                                            light.distanceTo);
+        light.pdf = probability * uintBitsToFloat(entry.w);
+        light.delta = true;
+    }
+    return light;
+}
+
+LightSample sampleEnvironment(uvec4 header, ivec2 size, vec3 uniforms, float probability)
+{
+    uint cells = header.z * header.w;
+    uint first = uint(size.x * size.y);
+    AliasDraw draw = drawAlias(uniforms.z, cells);
+    vec4 cell = STRANDLIGHT_ENVIRONMENT(first + draw.column);
+    uint index = draw.column;
+    if (draw.rest >= cell.x) {
+        index = uint(cell.y);
+        cell = STRANDLIGHT_ENVIRONMENT(first + index);
+    }
+    vec2 uv = (vec2(float(index % header.z), float(index / header.z)) + uniforms.xy) / vec2(header.zw);
+    LightSample light;
+    light.direction = environmentDirection(uv.x, uv.y);
+    light.distanceTo = 1e30;
+    light.radiance = environmentRadiance(uv, size);
+    light.pdf = probability * environmentPdf(cell.z, light.direction);
+    light.delta = false;
+    return light;
+}
+
+// --- Surfaces ------------------------------------------------------------------------------------------------------
+
+// Material constants times the textures that this scene's kernels know about.
+Surface surfaceOf(uint material, TexCoords t, STRANDLIGHT_OUT(vec3) normal)
+{
+    uint first = material * kMaterialTexels;
+    vec4 color = STRANDLIGHT_MATERIAL_TEXEL(first);
+    float metallic = STRANDLIGHT_MATERIAL_TEXEL(first + 1u).w;
+    vec4 specular = STRANDLIGHT_MATERIAL_TEXEL(first + 2u);
+    vec4 rest = STRANDLIGHT_MATERIAL_TEXEL(first + 3u);
+    uint flags = uint(rest.w);
+    normal = vec3(0.0, 0.0, 1.0);
+    if (kHasBaseColorTexture && (flags & kMaterialBaseColorTexture) != 0u)
+        color *= sampleSlot(first + 4u, t.uv0, t.uv1, kFullResolution);
+    if (kHasMetallicRoughnessTexture && (flags & kMaterialMetallicRoughnessTexture) != 0u) {
+        vec4 mr = sampleSlot(first + 6u, t.uv0, t.uv1, kFullResolution);
+        rest.x *= mr.y;
+        metallic *= mr.z;
+    }
+    if (kHasNormalTexture && (flags & kMaterialNormalTexture) != 0u) {
+        vec3 n = 2.0 * sampleSlot(first + 8u, t.uv0, t.uv1, kFullResolution).xyz - 1.0;
+        n = vec3(n.xy * rest.y, n.z);
+        float squared = dot(n, n);
+        normal = squared > 1e-12 ? n * inversesqrt(squared) : normal;
+    }
+    Surface surface = makeSurface(color.xyz, metallic, rest.x, specular.w, specular.xyz);
+    if (!kHasLayer) {
+        surface.f0 = vec3(0.0);
+        surface.f90 = 0.0;
+    }
+    return surface;
+}
+
+// --- The path ------------------------------------------------------------------------------------------------------
+
+void startPath(inout Path path, vec3 origin, vec3 direction)
+{
+    path.origin = origin;
+    path.direction = direction;
+    path.throughput = vec3(1.0);
+    path.pdf = 0.0;
+    path.bounce = 0u;
+    path.radiance = vec3(0.0);
+    path.sky = vec3(0.0);
+    path.alive = true;
+    path.primary = 0u;
+}
+
+void countRounds(inout Path path, Hit hit)
+{
+    // All lanes of a batch turn together, so the longest ray is what counts.
+    path.trips += kTripsPerRound * subgroupMax(hit.rounds) + 2u;
+    path.lost += hit.lost ? 1u : 0u;
+}
+
+void addEnvironment(inout Path path, uvec4 header)
+{
+    ivec2 size = ivec2(STRANDLIGHT_LIGHT_TABLE(1u).xy);
+    vec2 uv = environmentUv(path.direction);
+    vec3 radiance = path.throughput * environmentRadiance(uv, size);
+    float lightPdf = uintBitsToFloat(header.y) *
+                     environmentPdf(environmentDensity(uv, header.zw, size), path.direction);
+    if (path.bounce == 0u)
+        path.sky = radiance;
+    else
+        path.radiance += radiance * powerHeuristic(path.pdf, lightPdf);
+}
+
+void advancePath(inout Path path, PathContext context)
+{
+    uvec4 header = STRANDLIGHT_LIGHT_TABLE(0u);
+    Hit hit = traceSurface(context, path.origin, path.direction, 1e30, false);
+    countRounds(path, hit);
+    if (hit.slot == kNoHit) {
+        if (kHasEnvironment && !hit.lost)
+            addEnvironment(path, header);
+        path.primary = path.primary == 0u ? 4u : path.primary;
+        path.alive = false;
+        return;
+    }
+
+    // Geometry of the hit, turned towards the ray.
+    uvec4 c0 = fetchTriangle(hit.slot * 3u);
+    uvec4 c1 = fetchTriangle(hit.slot * 3u + 1u);
+    uvec4 c2 = fetchTriangle(hit.slot * 3u + 2u);
+    vec3 p0 = positionOf(c0);
+    vec3 e1 = positionOf(c1) - p0;
+    vec3 e2 = positionOf(c2) - p0;
+    vec3 position = p0 + e1 * hit.u + e2 * hit.v;
+    vec3 geometric = cross(e1, e2);
+    geometric *= inversesqrt(max(dot(geometric, geometric), 1e-36));
+    float facing = -dot(geometric, path.direction);
+    bool front = facing > 0.0;
+    geometric = front ? geometric : -geometric;
+    uint material = c1.w;
+    TexCoords t = fetchTexCoords(hit.slot, hit.u, hit.v, context.triangleCount);
+    bool doubleSided = (uint(STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).w) & kMaterialDoubleSided) != 0u;
+    path.primary = path.primary != 0u ? path.primary : (front ? 1u : (doubleSided ? 3u : 2u));
+
+    // Emission, weighted against light sampling finding the same point.
+    if (kHasEmitters && (front || doubleSided)) {
+        float lightPdf = (1.0 - uintBitsToFloat(header.y)) * uintBitsToFloat(c2.w) * hit.t * hit.t /
+                         max(abs(facing), 1e-9);
+        float weight = path.bounce == 0u ? 1.0 : powerHeuristic(path.pdf, lightPdf);
+        path.radiance += path.throughput * emissionOf(material, t) * weight;
+    }
+    if (path.bounce >= context.bounces) {
+        path.alive = false;
+        return;
+    }
+
+    // Shading frame: on the viewer's side of both normals.
+    uvec4 a0 = STRANDLIGHT_CORNER(hit.slot * 3u);
+    uvec4 a1 = STRANDLIGHT_CORNER(hit.slot * 3u + 1u);
+    uvec4 a2 = STRANDLIGHT_CORNER(hit.slot * 3u + 2u);
+    vec3 normal = unpackDirection(a0.x) * (1.0 - hit.u - hit.v) + unpackDirection(a1.x) * hit.u +
+                  unpackDirection(a2.x) * hit.v;
+    vec3 mapped;
+    Surface surface = surfaceOf(material, t, mapped);
+    if (kHasNormalTexture) {
+        vec3 n = normal * inversesqrt(max(dot(normal, normal), 1e-20));
+        vec3 tangent = unpackDirection(a0.w & ~1u) * (1.0 - hit.u - hit.v) + unpackDirection(a1.w & ~1u) * hit.u +
+                       unpackDirection(a2.w & ~1u) * hit.v;
+        tangent -= n * dot(n, tangent);
+        tangent *= inversesqrt(max(dot(tangent, tangent), 1e-20));
+        vec3 bitangent = cross(n, tangent) * ((a0.w & 1u) != 0u ? -1.0 : 1.0);
+        normal = tangent * mapped.x + bitangent * mapped.y + n * mapped.z;
+    }
+    normal = dot(normal, geometric) < 0.0 ? -normal : normal;
+    float squared = dot(normal, normal);
+    normal = squared > 1e-12 && dot(normal, path.direction) < 0.0 ? normal * inversesqrt(squared) : geometric;
+    vec3 axisX;
+    vec3 axisY;
+    buildBasis(normal, axisX, axisY);
+    vec3 view = -vec3(dot(path.direction, axisX), dot(path.direction, axisY), dot(path.direction, normal));
+    vec3 origin = offsetOrigin(context.grid, position, geometric);
+    uint dimension = 1u + path.bounce * 3u;
+
+    // Next-event estimation: one light, chosen between the environment and everything else.
+    if (kHasEmitters || kHasEnvironment) {
+        vec3 pick = uniform3(path.item, path.sampleIndex, dimension + 2u, context.seed);
+        vec3 uniforms = uniform3(path.item, path.sampleIndex, dimension + 1u, context.seed);
+        float environmentChoice = uintBitsToFloat(header.y);
+        LightSample light;
+        if (kHasEmitters && kHasEnvironment) {
+            LightSample sky = sampleEnvironment(header, ivec2(STRANDLIGHT_LIGHT_TABLE(1u).xy), uniforms, environmentChoice);
+            light = sampleEmitter(context, header, position, uniforms, 1.0 - environmentChoice);
+            if (pick.x < environmentChoice)
+                light = sky;
+        } else if (kHasEnvironment) {
+            light = sampleEnvironment(header, ivec2(STRANDLIGHT_LIGHT_TABLE(1u).xy), uniforms, 1.0);
+        } else {
+            light = sampleEmitter(context, header, position, uniforms, 1.0);
+        }
+        vec3 local = vec3(dot(light.direction, axisX), dot(light.direction, axisY), dot(light.direction, normal));
+        BrdfValue brdf = evaluateBrdf(surface, view, local);
+        bool useful = light.pdf > kSmallestPdf && dot(light.direction, geometric) > 0.0 && luminance(brdf.value) > 0.0 &&
+                      luminance(light.radiance) > 0.0;
+        // A ray of length zero is a miss at once: lanes without a useful sample do not walk.
+        float reach = useful ? light.distanceTo * (1.0 - 1e-4) : -1.0;
+        Hit blocker = traceSurface(context, origin, light.direction, reach, true);
+        countRounds(path, blocker);
+        bool visible = useful && blocker.slot == kNoHit && !blocker.lost;
+        float weight = light.delta ? 1.0 : powerHeuristic(light.pdf, brdf.pdf);
+        vec3 contribution = path.throughput * brdf.value * light.radiance * (weight / max(light.pdf, kSmallestPdf));
+        path.radiance += visible ? contribution : vec3(0.0);
+    }
+
+    // Scatter.
+    vec3 uniforms = uniform3(path.item, path.sampleIndex, dimension, context.seed);
+    vec3 local = sampleBrdf(surface, view, uniforms);
+    BrdfValue brdf = evaluateBrdf(surface, view, local);
+    vec3 direction = axisX * local.x + axisY * local.y + normal * local.z;
+    direction *= inversesqrt(max(dot(direction, direction), 1e-20));
+    bool scattered = brdf.pdf > kSmallestPdf && dot(direction, geometric) > 0.0;
+    path.throughput *= brdf.value / max(brdf.pdf, kSmallestPdf);
+    path.pdf = brdf.pdf;
+    path.origin = origin;
+    path.direction = direction;
+    path.bounce += 1u;
+    path.alive = scattered;
+    if (path.bounce >= kRouletteBounce) {
+        float survival = clamp(max(max(path.throughput.x, path.throughput.y), path.throughput.z), 0.0, 0.95);
+        float u = uniform3(path.item, path.sampleIndex, dimension + 2u, context.seed).y;
+        path.alive = path.alive && u < survival;
+        path.throughput /= max(survival, kSmallestPdf);
+    }
+    if (path.alive && path.trips >= kTripsToAbandon) {
+        path.alive = false;
+        path.lost += 1u;
+    }
+}
+
+#endif
