@@ -248,9 +248,12 @@ void appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& pr
             ++progress.degenerateTriangles;
             continue;
         }
-        scene.triangles.emplace_back(writer.vertex(corners.x, *normal),
-                                     writer.vertex(corners.y, *normal),
-                                     writer.vertex(corners.z, *normal));
+        // One after another: the order of arguments would be the compiler's choice, and with it the
+        // vertices'.
+        glm::uvec3 triangle;
+        for (int k = 0; k < 3; ++k)
+            triangle[k] = writer.vertex(corners[k], *normal);
+        scene.triangles.push_back(triangle);
         scene.triangleMaterials.push_back(material);
     }
     const TextureSlot& normalMap = scene.materials[material].normalTexture;

@@ -125,8 +125,8 @@ void addObjects(MeshBuilder& mesh)
     mesh.turn(-24.0f, {-1.3f, 0.0f, -1.85f});
     mesh.box({-1.7f, 0.0f, -2.15f}, {-0.9f, 1.35f, -1.55f}, kNoBottom);
     mesh.useMaterial(matte("yellow crate", {0.78f, 0.55f, 0.12f}, 0.6f));
-    mesh.turn(31.0f, {0.0f, 0.0f, 0.55f});
-    mesh.box({-0.2f, 0.0f, 0.35f}, {0.2f, 0.4f, 0.75f}, kNoBottom);
+    mesh.turn(31.0f, {-0.42f, 0.0f, 0.1f});
+    mesh.box({-0.62f, 0.0f, -0.1f}, {-0.22f, 0.4f, 0.3f}, kNoBottom);
     mesh.turn(0.0f, glm::vec3(0.0f));
 }
 
@@ -142,8 +142,8 @@ Scene buildRoomScene()
     addObjects(mesh);
 
     Camera camera;
-    camera.eye = glm::vec3(0.25f, 1.55f, 2.4f);
-    camera.target = glm::vec3(0.0f, 1.1f, -0.9f);
+    camera.eye = glm::vec3(0.3f, 1.5f, 2.4f);
+    camera.target = glm::vec3(0.0f, 1.0f, -0.9f);
     camera.verticalFovDegrees = 60.0f;
     scene.cameras.push_back(camera);
     return scene;
