@@ -249,4 +249,15 @@ const SpecularTable& specularTable()
     return table;
 }
 
+Image uploadSpecularTable(Context& context)
+{
+    const SpecularTable& table = specularTable();
+    const ImageDesc desc{gpu::kSpecularTableAlphas, gpu::kSpecularTableViews, kLobes,
+                         Format::RGBA32F, 1};
+    Image image(context, desc, "specular table");
+    for (std::uint32_t k = 0; k < kLobes; ++k)
+        image.upload(table.rows[k], k);
+    return image;
+}
+
 } // namespace strandlight

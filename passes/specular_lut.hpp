@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/base/image.hpp"
+#include "engine/vk/image.hpp"
 #include "shaders/shared/sg_specular.h"
 
 namespace strandlight {
@@ -18,12 +19,15 @@ struct SpecularTable
     std::vector<CpuImage> rows; // [4]
 
     // What the shader samples: bilinear interpolation at (alpha, cosView). Twin of
-    // shaders/sg/sg_shade.comp's fetch.
+    // shaders/sg/specular_models.glsl.
     gpu::SgMixture mixture(float alpha, glm::vec3 normal, glm::vec3 view) const;
 };
 
 // Fits the table: deterministic, about a quarter of a second on one core. Computed once per process
 // and kept.
 const SpecularTable& specularTable();
+
+// The same as four layers of an RGBA32F image.
+Image uploadSpecularTable(Context& context);
 
 } // namespace strandlight

@@ -1,0 +1,94 @@
+// Glossy reflection of the distant environment: prefiltered radiance times a visibility ratio from the second SG set.
+// Heitz, Hill, McGuire. Combining Analytic Direct Illumination and Stochastic Shadows. 2018 (the ratio)
+// Lagarde, de Rousiers. Moving Frostbite to Physically Based Rendering. 2014 (dominant direction)
+//
+// The lobes hold environment times visibility at the resolution of the light field, so the ratio's numerator is their
+// reflection and its denominator the unoccluded environment reflected at the same blur: the prefiltered level whose
+// lobe is the BRDF's widened by the light lobes'. What remains of the ratio is visibility; the sharp prefiltered level
+// brings back the detail that the lobes cannot hold. On rough surfaces both levels agree and the lobes alone decide.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shared/sg_specular.h"
+#include "shared/shade_types.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint kModel = kSpecularMixture;
+layout(binding = 0, rgba32f) uniform readonly image2D positionImage;
+layout(binding = 1, rgba32f) uniform readonly image2D frameImage;
+layout(binding = 2, rgba32f) uniform readonly image2D tangentImage;
+layout(binding = 3, rgba32f) uniform readonly image2D normalImage;
+layout(binding = 4, rgba32f) uniform readonly image2D diffuseImage;
+layout(binding = 5, rgba32f) uniform readonly image2D specularImage;
+layout(binding = 6, r32ui) uniform readonly uimageBuffer texelIndex;
+layout(binding = 7, rgba32ui) uniform readonly uimageBuffer lobes;
+layout(binding = 8) uniform sampler2DArray specularTable;
+layout(binding = 9, rgba32f) uniform readonly imageBuffer pyramid;
+layout(binding = 10, rgba32f) uniform readonly imageBuffer prefiltered;
+layout(binding = 11, rgba32f) uniform image2D lit;
+layout(push_constant, scalar) uniform Push { SgEnvironmentPush push; };
+#define SG_TEXEL_INDEX texelIndex
+#define SG_LOBES lobes
+#define SG_SPECULAR_TABLE specularTable
+#define ENVIRONMENT_PYRAMID pyramid
+#define ENVIRONMENT_PREFILTERED prefiltered
+#include "env/environment_lookup.glsl"
+#include "sg/frame.glsl"
+#include "sg/lobe_fetch.glsl"
+#include "sg/specular_models.glsl"
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= int(push.width) || pixel.y >= int(push.height)) {
+        return;
+    }
+    vec4 position = imageLoad(positionImage, pixel);
+    float f90 = imageLoad(diffuseImage, pixel).w;
+    vec4 specular = imageLoad(specularImage, pixel);
+    if (position.w == 0.0 || (f90 == 0.0 && specular.rgb == vec3(0.0))) {
+        return;
+    }
+    vec4 frameN = imageLoad(frameImage, pixel);
+    vec4 frameT = imageLoad(tangentImage, pixel);
+    vec4 normalAlpha = imageLoad(normalImage, pixel);
+    float alpha = normalAlpha.w;
+    AtlasFrame frame = atlasFrame(frameN.xyz, frameT.xyz, specular.w > 0.0);
+    vec3 viewWorld = normalize(push.eye - position.xyz);
+    vec3 normal = toFrame(frame, normalAlpha.xyz);
+    vec3 view = toFrame(frame, viewWorld);
+
+    // Numerator: the lobes' reflection, and how sharp the lobes were that made it.
+    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution, push.lobeCount);
+    SgMixture mixture = specularMixtureAt(alpha, normal, view);
+    vec3 reflected = vec3(0.0);
+    float inverseSharpness = 0.0;
+    float total = 0.0;
+    for (uint i = 0u; i < push.lobeCount; ++i) {
+        SgSample lobe = sgFetch(footprint, i);
+        vec2 response = specularResponse(kModel, mixture, alpha, normal, view, lobe.axis, lobe.lambda);
+        reflected += lobe.amplitude * (specular.rgb * response.x + f90 * response.y);
+        float weight = max(dot(lobe.amplitude, vec3(1.0)), 0.0) * (response.x + response.y);
+        inverseSharpness += weight / max(lobe.lambda, 1e-3);
+        total += weight;
+    }
+    if (sgFootprintEmpty(footprint) || total <= 0.0) {
+        return;
+    }
+    reflected = max(reflected, vec3(0.0));
+
+    // GGX of roughness alpha is about an SG of sharpness 1 / (2 alpha^2); blurs add in 1 / sharpness.
+    float widened = min(sqrt(alpha * alpha + 0.5 * inverseSharpness / total), 1.0);
+    float roughness = sqrt(alpha);
+    vec3 mirror = normalAlpha.xyz * (2.0 * dot(normalAlpha.xyz, viewWorld)) - viewWorld;
+    float lean = (1.0 - roughness) * (sqrt(1.0 - roughness) + roughness);
+    vec3 direction = safeNormalize(mix(normalAlpha.xyz, mirror, lean), normalAlpha.xyz);
+    vec3 albedo = specular.rgb * mixture.scale + f90 * mixture.bias;
+    vec3 sharp = albedo * prefilteredRadiance(push.environment, direction, alpha);
+    vec3 blurred = albedo * prefilteredRadiance(push.environment, direction, widened);
+
+    // Visibility is at most 1. A dark denominator (looking away from all light) leaves the lobes as they are.
+    vec3 ratio = min(reflected / max(blurred, vec3(1e-6)), vec3(1.0));
+    vec3 radiance = sharp * ratio;
+    imageStore(lit, pixel, vec4(imageLoad(lit, pixel).rgb + radiance, 1.0));
+}
