@@ -1,0 +1,148 @@
+#include "passes/sg_fit.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "engine/base/error.hpp"
+#include "engine/base/progress.hpp"
+#include "passes/fit_report.hpp"
+#include "passes/sg_fit_cnn.hpp"
+#include "passes/sg_fit_direct.hpp"
+#include "shaders/shared/sg_fit_types.h"
+
+namespace strandlight {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start)
+{
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// One submit is about this long, so that the user's wish to stop is heard soon.
+constexpr double kSliceSeconds = 0.15;
+constexpr std::uint32_t kMostStepsPerSlice = 64;
+
+// Runs the fit to its last step, saving and listening on the way. Returns the first step's loss.
+double runToEnd(DirectFit& fit, const FitSettings& settings, double firstLoss,
+                const FitCheckpoint* checkpoint)
+{
+    Progress progress("fit", settings.steps);
+    const auto save = [&] {
+        if (!checkpoint || !checkpoint->save)
+            return;
+        FitState state = fit.state();
+        state.firstLoss = firstLoss;
+        checkpoint->save(state);
+    };
+    Clock::time_point lastSave = Clock::now();
+    std::uint32_t slice = 1;
+    while (fit.step() < settings.steps) {
+        if (interruptRequested()) {
+            save();
+            throwIfInterrupted();
+        }
+        const Clock::time_point start = Clock::now();
+        const std::uint32_t before = fit.step();
+        fit.run(std::min(slice, settings.steps - before));
+        if (before == 0)
+            firstLoss = fit.loss();
+        progress.update(fit.step());
+        // How steps are cut into submits does not change the result.
+        const double perStep = secondsSince(start) / double(fit.step() - before);
+        slice = std::uint32_t(std::clamp(kSliceSeconds / perStep, 1.0, double(kMostStepsPerSlice)));
+        if (checkpoint && secondsSince(lastSave) > checkpoint->secondsBetweenSaves) {
+            save();
+            lastSave = Clock::now();
+        }
+    }
+    return firstLoss;
+}
+
+void countClamps(const FitProblem& problem, const SgField& field, FitStatistics& statistics)
+{
+    for (const SgLobe& lobe : field.lobes) {
+        if (lobe.logSharpness <= problem.minimumLogSharpness ||
+            lobe.logSharpness >= problem.maximumLogSharpness)
+            ++statistics.sharpnessAtLimit;
+        if (lobe.amplitude == glm::vec3(0.0f))
+            ++statistics.amplitudesAtZero;
+    }
+    statistics.raisedScales = problem.raisedScales;
+    statistics.texelsWithoutImage = std::uint64_t(std::count_if(
+        problem.scales.begin(), problem.scales.end(), [](float s) { return s < 0.0f; }));
+}
+
+SgField runDirect(Context& context, const FitProblem& problem, const FitSettings& settings,
+                  const FitState& start, const FitCheckpoint* checkpoint, FitStatistics& statistics)
+{
+    if (start.parameters.size() !=
+        std::size_t(problem.lobes) * problem.texelCount() * gpu::kSgFitComponents)
+        throw Error("fit: a state of " + std::to_string(start.parameters.size()) +
+                    " parameters does not belong to " + std::to_string(problem.texelCount()) +
+                    " texels of " + std::to_string(problem.lobes) + " lobes");
+    DirectFit fit(context, problem, settings, start);
+    statistics.firstLoss = runToEnd(fit, settings, start.firstLoss, checkpoint);
+    const FitState state = fit.state();
+    statistics.lastLoss = fit.loss();
+    statistics.skippedSteps = state.skippedSteps;
+    return fieldFromState(problem, state);
+}
+
+} // namespace
+
+const char* toString(FitMode mode)
+{
+    return mode == FitMode::Direct ? "direct" : mode == FitMode::Cnn ? "cnn" : "cnn+refine";
+}
+
+FitMode fitModeFrom(const std::string& name)
+{
+    for (const FitMode mode : {FitMode::Direct, FitMode::Cnn, FitMode::CnnRefine})
+        if (name == toString(mode))
+            return mode;
+    throw Error("unknown fit mode '" + name + "'; known are direct, cnn and cnn+refine");
+}
+
+SgField fitLobes(Context& context, const Atlas& atlas, const Lightfield& lightfield, LightSet light,
+                 const FitSettings& settings, FitStatistics* statistics,
+                 const FitCheckpoint* checkpoint)
+{
+    return fitLobes(context,
+                    buildFitProblem(atlas, downloadLightfield(lightfield), light, settings),
+                    settings, statistics, checkpoint);
+}
+
+SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings& settings,
+                 FitStatistics* statistics, const FitCheckpoint* checkpoint)
+{
+    const Clock::time_point begin = Clock::now();
+    FitStatistics numbers;
+    SgField field;
+    field.lobeCount = problem.lobes;
+    if (problem.texelCount() > 0) {
+        const FitState* resume = checkpoint ? checkpoint->resume : nullptr;
+        if (settings.mode == FitMode::Direct) {
+            field = runDirect(context, problem, settings,
+                              resume ? *resume : startFit(problem, settings.start), checkpoint,
+                              numbers);
+        } else {
+            // The encoder is trained again when a bake is resumed: it is the same to the last bit.
+            if (settings.mode == FitMode::Cnn || !resume)
+                field = fitLobesByCnn(context, problem, settings, numbers);
+            if (settings.mode == FitMode::CnnRefine)
+                field = runDirect(context, problem, settings,
+                                  resume ? *resume : startFit(problem, field), checkpoint, numbers);
+        }
+        countClamps(problem, field, numbers);
+    }
+    numbers.seconds = secondsSince(begin);
+    if (statistics)
+        *statistics = numbers;
+    return field;
+}
+
+} // namespace strandlight

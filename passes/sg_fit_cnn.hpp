@@ -1,0 +1,20 @@
+// The thesis's way to lobes: one convolutional encoder, trained on all images of the scene, maps an
+// image to its lobes; alike images give alike lobes, which is what makes them interpolate. Currius,
+// Dolonius, Assarsson, Sintorn. Spherical Gaussian Light-field Textures for Fast Precomputed Global
+// Illumination. 2020
+#pragma once
+
+#include "engine/vk/context.hpp"
+#include "passes/sg_field.hpp"
+#include "passes/sg_fit_cells.hpp"
+#include "passes/sg_fit_settings.hpp"
+
+namespace strandlight {
+
+// Trains the encoder for settings.cnnEpochs rounds over the texels with images, then encodes every
+// texel. Texels without image get the mean of their neighbours. Fills firstLoss, lastLoss and
+// skippedSteps of `statistics`. Deterministic. Throws Interrupted when the user stops.
+SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSettings& settings,
+                      FitStatistics& statistics);
+
+} // namespace strandlight
