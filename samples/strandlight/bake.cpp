@@ -1,0 +1,154 @@
+// strandlight bake: scene to .sgl.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "engine/base/error.hpp"
+#include "passes/bake.hpp"
+#include "passes/sgl_file.hpp"
+#include "samples/strandlight/commands.hpp"
+#include "samples/strandlight/outputs.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+struct Options
+{
+    DeviceOptions device;
+    SceneOptions scene;
+    BakeSettings settings;
+    std::string fit = toString(BakeSettings{}.fit);
+    std::string output;
+    std::string json;
+};
+
+template <class T>
+void addNumber(CLI::App& app, const std::string& name, T& value, const std::string& meaning,
+               T lowest, T highest)
+{
+    app.add_option(name, value, meaning)
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(lowest, highest));
+}
+
+void addSettings(CLI::App& app, Options& o)
+{
+    BakeSettings& s = o.settings;
+    addNumber(app, "--atlas", s.atlasResolution, "Texels per side of the atlas", 8u, 4096u);
+    addNumber(app, "--lightfield", s.lightfieldSize, "Directions per side of a texel's image", 4u,
+              64u);
+    addNumber(app, "--lobes", s.lobes, "Spherical gaussians per texel", 1u, 32u);
+    addNumber(app, "--env-lobes", s.environmentLobes, "The same for the environment's visibility",
+              1u, 32u);
+    app.add_option("--fit", o.fit, "How lobes are found")
+        ->type_name("MODE")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"direct", "cnn", "cnn+refine"}));
+    addNumber(app, "--steps", s.steps, "Steps of the fit", 0u, 1000000u);
+    addNumber(app, "--spp", s.samplesPerDirection, "Paths per direction", 1u, 65536u);
+    addNumber(app, "--bounces", s.bounces, "Reflections on a path", 0u, 64u);
+    addNumber(app, "--seed", s.seed, "Of the random numbers", 0u, 0xffffffffu);
+    app.add_flag("--resume", s.resume, "Go on from the checkpoint of an interrupted bake");
+}
+
+// The checkpoint lives beside the result and is gone when that is written.
+std::filesystem::path checkpointOf(const std::string& output)
+{
+    return output + ".checkpoint";
+}
+
+Json describe(const Options& o, const Context& context, const SgBake& bake,
+              const BakeStatistics& statistics, double seconds)
+{
+    const BakeSettings& s = o.settings;
+    Json json = describeRun("bake", &context);
+    json["settings"] = {{"scene", o.scene.scene},
+                        {"environment", o.scene.environment},
+                        {"atlas", s.atlasResolution},
+                        {"lightfield", s.lightfieldSize},
+                        {"lobes", s.lobes},
+                        {"environment_lobes", s.environmentLobes},
+                        {"fit", o.fit},
+                        {"steps", s.steps},
+                        {"spp", s.samplesPerDirection},
+                        {"bounces", s.bounces},
+                        {"seed", s.seed}};
+    json["result"] = {{"file", o.output},
+                      {"file_bytes", std::filesystem::file_size(o.output)},
+                      {"charts", bake.atlas.chartCount},
+                      {"texels", statistics.texels},
+                      {"skipped_texels", statistics.skippedTexels},
+                      {"empty_texels", statistics.emptyTexels},
+                      {"bytes_per_texel", statistics.bytesPerTexel},
+                      {"radiance_rmse", statistics.radianceRmse},
+                      {"environment_rmse", statistics.environmentRmse},
+                      {"peak_device_bytes", statistics.peakDeviceBytes},
+                      {"atlas_seconds", statistics.atlasSeconds},
+                      {"capture_seconds", statistics.captureSeconds},
+                      {"fit_seconds", statistics.fitSeconds},
+                      {"seconds", seconds}};
+    return json;
+}
+
+void print(const Options& o, const Context& context, const SgBake& bake,
+           const BakeStatistics& statistics, double seconds)
+{
+    std::printf("device    %s\n", context.device().name.c_str());
+    std::printf("atlas     %ux%u, %u charts, %u texels with surface, %u of them inside geometry\n",
+                bake.atlas.resolution, bake.atlas.resolution, bake.atlas.chartCount,
+                statistics.texels, statistics.skippedTexels);
+    std::printf("lobes     %u per texel, %llu bytes per texel, light field RMSE %.4g\n",
+                bake.radiance.lobeCount, static_cast<unsigned long long>(statistics.bytesPerTexel),
+                statistics.radianceRmse);
+    if (bake.environment)
+        std::printf("window    %u lobes per texel for the environment, RMSE %.4g\n",
+                    bake.environment->lobeCount, statistics.environmentRmse);
+    std::printf("seconds   %.1f: atlas %.1f, capture %.1f, fit %.1f\n", seconds,
+                statistics.atlasSeconds, statistics.captureSeconds, statistics.fitSeconds);
+    std::printf("wrote     %s, %s\n", o.output.c_str(),
+                bytesText(std::filesystem::file_size(o.output)).c_str());
+}
+
+int run(Options& o)
+{
+    const auto start = std::chrono::steady_clock::now();
+    requireOutput(o.output, {".sgl"});
+    requireOutput(o.json, {".json"});
+    o.settings.fit = fitModeFrom(o.fit);
+    o.settings.checkpoint = checkpointOf(o.output);
+    const Scene scene = openScene(o.scene);
+    Context context = openDevice(o.device);
+
+    BakeStatistics statistics;
+    const SgBake bake = bakeScene(context, scene, o.settings, &statistics);
+    saveSgl(o.output, bake);
+    std::filesystem::remove(o.settings.checkpoint);
+
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    print(o, context, bake, statistics, elapsed.count());
+    writeJson(o.json, describe(o, context, bake, statistics, elapsed.count()));
+    return 0;
+}
+
+} // namespace
+
+Command addBake(CLI::App& parent)
+{
+    CLI::App* app = parent.add_subcommand("bake", "Bake a scene's light into a .sgl file");
+    const auto o = std::make_shared<Options>();
+    addSceneOptions(*app, o->scene);
+    app->add_option("-o,--output", o->output, "The bake, .sgl")->required()->type_name("FILE");
+    addSettings(*app, *o);
+    addJsonOption(*app, o->json);
+    addDeviceOptions(*app, o->device);
+    addExamples(*app, "  strandlight bake builtin:room -o room.sgl\n"
+                      "  strandlight bake house.glb --env sky.hdr --atlas 256 -o house.sgl\n"
+                      "Ctrl-C keeps house.sgl.checkpoint; the same command with --resume goes on "
+                      "to the same bytes.");
+    return {app, [o] { return run(*o); }};
+}
+
+} // namespace strandlight::cli

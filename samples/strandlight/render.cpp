@@ -1,0 +1,150 @@
+// strandlight render: a picture from a bake.
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include "engine/base/progress.hpp"
+#include "engine/scene/gpu_scene.hpp"
+#include "passes/render_frame.hpp"
+#include "passes/sgl_file.hpp"
+#include "samples/strandlight/commands.hpp"
+#include "samples/strandlight/outputs.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+const std::map<std::string, RenderView> kViews{{"final", RenderView::Final},
+                                               {"diffuse", RenderView::Diffuse},
+                                               {"specular", RenderView::Specular},
+                                               {"lobes", RenderView::Lobes},
+                                               {"atlas", RenderView::Atlas}};
+const std::map<std::string, SpecularModel> kSpecularModels{{"mixture", SpecularModel::Mixture},
+                                                           {"asg", SpecularModel::Asg},
+                                                           {"ndf", SpecularModel::NdfFilter}};
+
+struct Options
+{
+    DeviceOptions device;
+    SceneOptions scene;
+    ViewOptions view;
+    RenderSettings settings;
+    std::string bake;
+    std::string viewName = "final";
+    std::string specularName = "mixture";
+    bool stats = false;
+    std::string json;
+};
+
+double totalMilliseconds(const FrameResult& frame)
+{
+    double total = 0.0;
+    for (const PassTiming& timing : frame.timings)
+        total += timing.milliseconds;
+    return total;
+}
+
+Json describe(const Options& o, const Context& context, const Camera& camera,
+              const FrameResult& frame, double seconds)
+{
+    Json json = describeRun("render", &context);
+    json["settings"] = {{"scene", o.scene.scene},
+                        {"environment", o.scene.environment},
+                        {"bake", o.bake},
+                        {"width", o.settings.width},
+                        {"height", o.settings.height},
+                        {"supersample", o.settings.supersample},
+                        {"camera", describeCamera(camera)},
+                        {"view", o.viewName},
+                        {"specular", o.specularName},
+                        {"exposure", o.view.exposure}};
+    Json passes = Json::array();
+    for (const PassTiming& timing : frame.timings)
+        passes.push_back({{"name", timing.pass}, {"milliseconds", timing.milliseconds}});
+    json["result"] = {{"files", o.view.outputs},
+                      {"passes", passes},
+                      {"skipped", frame.skipped},
+                      {"milliseconds", totalMilliseconds(frame)},
+                      {"lobe_bytes", frame.textureBytes},
+                      {"peak_device_bytes", context.peakBytesAllocated()},
+                      {"seconds", seconds}};
+    return json;
+}
+
+void printStats(const Context& context, const FrameResult& frame)
+{
+    std::printf("device    %s\n", context.device().name.c_str());
+    for (const PassTiming& timing : frame.timings)
+        std::printf("pass      %-24s %9.3f ms\n", timing.pass.c_str(), timing.milliseconds);
+    for (const std::string& pass : frame.skipped)
+        std::printf("culled    %s\n", pass.c_str());
+    std::printf("together  %zu passes, %.3f ms; lobes %s, device memory %s\n", frame.passes.size(),
+                totalMilliseconds(frame), bytesText(frame.textureBytes).c_str(),
+                bytesText(context.peakBytesAllocated()).c_str());
+}
+
+int run(Options& o)
+{
+    const auto start = std::chrono::steady_clock::now();
+    for (const std::string& output : o.view.outputs)
+        requireOutput(output, {".png", ".exr"});
+    requireOutput(o.json, {".json"});
+    const Size size = parseSize(o.view.size);
+    o.settings.width = size.width;
+    o.settings.height = size.height;
+    o.settings.view = kViews.at(o.viewName);
+    o.settings.specular = kSpecularModels.at(o.specularName);
+    const SgBake bake = loadSgl(o.bake);
+    const Scene scene = openScene(o.scene);
+    const Camera camera = chooseCamera(scene, o.view.camera);
+    Context context = openDevice(o.device);
+
+    GpuScene gpuScene = uploadScene(context, scene);
+    const FrameResult frame = renderFrame(context, scene, gpuScene, bake, camera, o.settings);
+    throwIfInterrupted();
+    for (const std::string& output : o.view.outputs)
+        writePicture(output, frame.radiance, o.view.exposure);
+
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    if (o.stats)
+        printStats(context, frame);
+    for (const std::string& output : o.view.outputs)
+        std::printf("wrote     %s, %.1f s\n", output.c_str(), elapsed.count());
+    writeJson(o.json, describe(o, context, camera, frame, elapsed.count()));
+    return 0;
+}
+
+} // namespace
+
+Command addRender(CLI::App& parent)
+{
+    CLI::App* app = parent.add_subcommand("render", "Render a scene from its bake");
+    const auto o = std::make_shared<Options>();
+    addSceneOptions(*app, o->scene);
+    app->add_option("--bake", o->bake, "The bake, .sgl")->required()->type_name("FILE");
+    addViewOptions(*app, o->view);
+    app->add_option("--view", o->viewName, "final, diffuse, specular, lobes or atlas")
+        ->type_name("VIEW")
+        ->capture_default_str()
+        ->check(CLI::IsMember(kViews));
+    app->add_option("--specular", o->specularName,
+                    "mixture: GGX as four SGs; asg: as in the thesis; ndf: Tokuyoshi 2024")
+        ->type_name("MODEL")
+        ->capture_default_str()
+        ->check(CLI::IsMember(kSpecularModels));
+    app->add_option("--supersample", o->settings.supersample, "Per axis")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(1u, 8u));
+    app->add_flag("--stats", o->stats, "Print passes that ran, milliseconds, and what was culled");
+    addJsonOption(*app, o->json);
+    addDeviceOptions(*app, o->device);
+    addExamples(*app,
+                "  strandlight render builtin:room --bake room.sgl -o room.png --stats\n"
+                "  strandlight render house.glb --env sky.hdr --bake house.sgl --view specular "
+                "--exposure 1 -o glossy.exr");
+    return {app, [o] { return run(*o); }};
+}
+
+} // namespace strandlight::cli
