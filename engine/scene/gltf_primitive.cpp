@@ -134,15 +134,16 @@ public:
     PrimitiveWriter(const Attributes& attributes, const Transform& transform, Scene& scene)
         : attributes_(attributes), transform_(transform), scene_(scene)
     {
+        positions_.reserve(attributes.count);
+        for (std::size_t i = 0; i < attributes.count; ++i) {
+            const glm::dvec4 local(vectorAt(attributes.positions, i, 3), 1.0);
+            positions_.emplace_back(glm::dvec3(transform.matrix * local));
+        }
         if (!attributes.normals.empty()) // flat shading shares no vertex
             written_.resize(attributes.count, kNone);
     }
 
-    glm::vec3 position(std::uint32_t index) const
-    {
-        const glm::dvec3 local = vectorAt(attributes_.positions, index, 3);
-        return glm::vec3(glm::dvec3(transform_.matrix * glm::dvec4(local, 1.0)));
-    }
+    glm::vec3 position(std::uint32_t index) const { return positions_[index]; }
 
     std::uint32_t vertex(std::uint32_t index, glm::vec3 faceNormal);
 
@@ -158,6 +159,10 @@ private:
     const Attributes& attributes_;
     const Transform& transform_;
     Scene& scene_;
+    // In the world, rounded to fp32 in memory: GCC 12 at -O3 leaves out the rounding of double to
+    // float and back where it sees both, and then the same triangle is degenerate or not by
+    // optimisation level.
+    std::vector<glm::vec3> positions_;
     std::vector<std::uint32_t> written_;
 };
 
