@@ -392,20 +392,20 @@ void advancePath(inout Path path, PathContext context)
         LightSample light;
         if (kHasEmitters && kHasEnvironment) {
             LightSample sky = sampleEnvironment(header, ivec2(STRANDLIGHT_LIGHT_TABLE(1u).xy), uniforms, environmentChoice);
-            light = sampleEmitter(context, header, position, uniforms, 1.0 - environmentChoice);
+            light = sampleEmitter(context, header, origin, uniforms, 1.0 - environmentChoice);
             if (pick.x < environmentChoice)
                 light = sky;
         } else if (kHasEnvironment) {
             light = sampleEnvironment(header, ivec2(STRANDLIGHT_LIGHT_TABLE(1u).xy), uniforms, 1.0);
         } else {
-            light = sampleEmitter(context, header, position, uniforms, 1.0);
+            light = sampleEmitter(context, header, origin, uniforms, 1.0);
         }
         vec3 local = vec3(dot(light.direction, axisX), dot(light.direction, axisY), dot(light.direction, normal));
         BrdfValue brdf = evaluateBrdf(surface, view, local);
         bool useful = light.pdf > kSmallestPdf && dot(light.direction, geometric) > 0.0 && luminance(brdf.value) > 0.0 &&
                       luminance(light.radiance) > 0.0;
         // A ray of length zero is a miss at once: lanes without a useful sample do not walk.
-        float reach = useful ? light.distanceTo * (1.0 - 1e-4) : -1.0;
+        float reach = useful ? light.distanceTo * (1.0 - 1e-4) - context.grid.rayOffset : -1.0;
         Hit blocker = traceSurface(context, origin, light.direction, reach, true);
         countRounds(path, blocker);
         bool visible = useful && blocker.slot == kNoHit && !blocker.lost;
