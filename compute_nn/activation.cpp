@@ -20,7 +20,6 @@ gpu::ElementPush elementPush(const TensorId& in, const TensorId& out, const Tens
             out.view(),
             saved.view(),
             out.desc.c * out.desc.pixels(),
-            std::uint32_t(out.desc.elements()),
             slope};
 }
 
@@ -31,7 +30,7 @@ TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t
     const BufferId from = pass.read(x.buffer);
     const BufferId to = pass.write(y.buffer);
     const gpu::ElementPush push = elementPush(x, y, x, slope);
-    pass.dispatch(kernels::activation, {push.count, 1, 1}, push, {from, from, to}, {kind, 0});
+    pass.dispatch(kernels::activation, {push.channelPixels, y.desc.n, 1}, push, {from, from, to}, {kind, 0});
     return y.as(to);
 }
 
@@ -67,7 +66,7 @@ TensorId activationBackward(RenderGraph& graph, std::string_view name, const Act
     const BufferId saved = pass.read(y.buffer);
     const BufferId to = pass.write(dX.buffer);
     const gpu::ElementPush push = elementPush(dY, dX, y, activation.slope);
-    pass.dispatch(kernels::activation, {push.count, 1, 1}, push, {from, saved, to},
+    pass.dispatch(kernels::activation, {push.channelPixels, y.desc.n, 1}, push, {from, saved, to},
                   {std::uint32_t(activation.kind), 1});
     return dX.as(to);
 }

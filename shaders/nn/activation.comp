@@ -45,11 +45,10 @@ float derivative(float y)
 
 void main()
 {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= push.count)
+    uint r = gl_GlobalInvocationID.x;
+    uint n = gl_GlobalInvocationID.y;
+    if (r >= push.channelPixels)
         return;
-    uint n = i / push.channelPixels;
-    uint r = i - n * push.channelPixels;
     float value = imageLoad(inputTensor, int(push.source.offset + n * push.source.imageStride + r)).x;
     uint at = push.result.offset + n * push.result.imageStride + r;
     if (BACKWARD == 0u)

@@ -15,6 +15,7 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 
 #include "shared/nn_types.h"
+#include "nn/divide.glsl"
 
 layout(local_size_x = 32) in;
 layout(constant_id = 0) const uint K = 16; // output channels of an invocation
@@ -52,18 +53,19 @@ void main()
 
     uint first = push.firstPixel + gl_GlobalInvocationID.x / kLanes * kLanes * P + gl_GlobalInvocationID.x % kLanes;
     int top[P], left[P], image[P];
-    uint store[P];
+    uint store[P], imageIndex[P];
     bool inside[P];
     [[unroll]] for (uint j = 0; j < P; ++j) {
         uint pixel = first + j * kLanes;
-        uint row = pixel / gridWidth;
-        uint n = row / gridHeight;
+        uint row = divide(pixel, gridWidth);
+        uint n = divide(row, gridHeight);
         uint x = (pixel - row * gridWidth) * phaseWidth + phaseX;
         uint y = (row - n * gridHeight) * phaseHeight + phaseY;
         inside[j] = pixel < push.endPixel && x < push.result.width && y < push.result.height;
         top[j] = int(row - n * gridHeight) * pixelStepY + originY;
         left[j] = int(pixel - row * gridWidth) * pixelStepX + originX;
         image[j] = int(push.source.offset + n * push.source.imageStride);
+        imageIndex[j] = n;
         store[j] = n * push.result.imageStride + y * push.result.width + x;
     }
 
@@ -142,7 +144,7 @@ void main()
                     value += result[push.result.offset + at];
                 if ((FLAGS & kConvDerivative) != 0) {
                     // The saved tensor has the result's planes but its own place in its own buffer.
-                    uint n = (first + j * kLanes) / (gridWidth * gridHeight);
+                    uint n = imageIndex[j];
                     uint savedAt = push.savedOffset + n * push.savedImageStride + at - n * push.result.imageStride;
                     value = imageLoad(saved, int(savedAt)).x > 0.0 ? value : value * push.slope;
                 } else {

@@ -96,7 +96,6 @@ struct ElementPush
     TensorView result;
     TensorView saved;
     uint channelPixels; // C H W
-    uint count;         // N C H W
     float slope;
 };
 

@@ -1,0 +1,161 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "compute_nn/conv2d.hpp"
+#include "compute_nn/sg_mixture.hpp"
+#include "engine/base/error.hpp"
+#include "kernels.gen.hpp"
+#include "tests/nn/compare.hpp"
+#include "tests/nn/op_cases.hpp"
+#include "tests/support/gpu_fixture.hpp"
+
+using namespace strandlight;
+using namespace strandlight::test;
+
+namespace {
+
+// fp32 sums of up to a thousand products against double: measured below 1e-6, a wrong index gives
+// 0.1 and more.
+constexpr double kNormTolerance = 5e-6;
+// Of the largest element.
+constexpr double kElementTolerance = 2e-5;
+
+std::vector<OpCase> allCases()
+{
+    std::vector<OpCase> cases;
+    addConvCases(cases);
+    addOtherCases(cases);
+    return cases;
+}
+
+bool sameBits(const std::vector<float>& a, const std::vector<float>& b)
+{
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+} // namespace
+
+TEST_CASE("every op: the device computes what the twin computes, and the same bits twice")
+{
+    for (const OpCase& op : allCases()) {
+        CAPTURE(op.name);
+        const std::vector<Output> got = op.device(context());
+        const std::vector<ExpectedOutput> wanted = op.twin();
+        const std::vector<Output> again = op.device(context());
+        REQUIRE_EQ(got.size(), wanted.size());
+        for (std::size_t i = 0; i < got.size(); ++i) {
+            CAPTURE(got[i].name);
+            REQUIRE_EQ(got[i].values.size(), wanted[i].values.size());
+            CHECK_LE(relativeError(got[i].values, wanted[i].values), kNormTolerance);
+            double largest = 0.0, worst = 0.0;
+            for (std::size_t k = 0; k < wanted[i].values.size(); ++k) {
+                largest = std::fmax(largest, std::abs(wanted[i].values[k]));
+                worst = std::fmax(worst, std::abs(wanted[i].values[k] - got[i].values[k]));
+            }
+            CHECK_LE(worst, kElementTolerance * largest + 1e-30);
+            CHECK(sameBits(got[i].values, again[i].values));
+        }
+    }
+    CHECK_EQ(context().validationMessages(), 0);
+}
+
+TEST_CASE("weights by shuffle and weights by plain loads give the same bits")
+{
+    // A device with fewer than eight lanes takes the second path.
+    const TensorDesc xDesc{2, 6, 9, 7};
+    const Conv2dDesc conv{.in = 6, .out = 13, .stride = {2, 2}};
+    const TensorDesc yDesc = conv.output(xDesc);
+    const std::vector<float> w = randomValues<float>(conv.weightElements(), 2);
+    std::vector<std::vector<float>> results[2];
+    for (std::uint32_t flag : {0u, gpu::kConvShuffle}) {
+        RenderGraph graph(context());
+        const TensorId x =
+            uploadTensor(graph, "x", xDesc, randomValues<float>(xDesc.elements(), 1));
+        const TensorId dY =
+            uploadTensor(graph, "dY", yDesc, randomValues<float>(yDesc.elements(), 3));
+        PassBuilder pass = graph.addComputePass("both kernels");
+        const BufferId from = pass.read(x.buffer), right = pass.read(dY.buffer);
+        const BufferId weights = pass.read(graph.uploadBuffer("w", std::span(w)));
+        const BufferId y = pass.write(graph.createBuffer("y", yDesc.bytes()));
+        const BufferId dW = pass.write(graph.createBuffer("dW", w.size() * 4));
+        const std::uint32_t pixels = yDesc.n * yDesc.pixels();
+        pass.dispatch(kernels::conv, {(pixels + 31) / 32 * 8, 1, 1},
+                      gpu::ConvPush{.source = x.view(),
+                                    .result = dY.view(),
+                                    .savedOffset = 0,
+                                    .savedImageStride = 0,
+                                    .inChannels = 6,
+                                    .outChannels = 13,
+                                    .weightOffset = 0,
+                                    .weightStrideOut = 54,
+                                    .weightStrideIn = 9,
+                                    .biasOffset = 0,
+                                    .kernelHeight = 3,
+                                    .kernelWidth = 3,
+                                    .strideHeight = 2,
+                                    .strideWidth = 2,
+                                    .paddingHeight = 1,
+                                    .paddingWidth = 1,
+                                    .transposed = 0,
+                                    .firstPixel = 0,
+                                    .endPixel = pixels,
+                                    .slope = 1.0f},
+                      {from, weights, from, y}, {16, 4, 2, flag});
+        pass.dispatch(kernels::conv_backward_weight, {8, 2, 1},
+                      gpu::ConvWeightPush{.small = dY.view(),
+                                          .large = x.view(),
+                                          .smallChannels = 13,
+                                          .largeChannels = 6,
+                                          .kernelHeight = 3,
+                                          .kernelWidth = 3,
+                                          .strideHeight = 2,
+                                          .strideWidth = 2,
+                                          .paddingHeight = 1,
+                                          .paddingWidth = 1,
+                                          .pixels = pixels,
+                                          .stripPixels = pixels,
+                                          .firstStrip = 0},
+                      {right, from, dW}, {2, 32, 2, flag});
+        graph.output(y);
+        graph.output(dW);
+        graph.execute();
+        results[flag != 0] = {graph.read<float>(y), graph.read<float>(dW)};
+    }
+    CHECK(sameBits(results[0][0], results[1][0]));
+    CHECK(sameBits(results[0][1], results[1][1]));
+    CHECK_GT(std::abs(results[0][1][0]), 0.0f);
+}
+
+TEST_CASE("a loop beyond the trip budget is refused on the host")
+{
+    const SgMixtureDesc desc{.images = 1, .lobes = 1, .directions = 32769};
+    RenderGraph graph(context());
+    const TensorDesc out{1, 3, 1, desc.directions};
+    const TensorId raw = createTensor(graph, "raw", desc.raw());
+    const TensorId dOut = createTensor(graph, "dOut", out);
+    const BufferId along = graph.createBuffer("directions", desc.directions * 12);
+    CHECK_THROWS_AS((void)sgMixtureBackward(graph, desc, raw, along, dOut,
+                                            createTensor(graph, "dRaw", desc.raw())),
+                    Error);
+    CHECK_NOTHROW(checkTripBudget("any", 32768));
+    CHECK_THROWS_AS(checkTripBudget("any", 32769), Error);
+}
+
+TEST_CASE("shapes that do not fit are refused by name")
+{
+    RenderGraph graph(context());
+    const Conv2dDesc conv{.in = 4, .out = 2};
+    const TensorId x = createTensor(graph, "x", {1, 4, 8, 8}),
+                   y = createTensor(graph, "y", {1, 2, 8, 7});
+    const LayerWeights weights{graph.createBuffer("w", 1024), 0, 0, false};
+    try {
+        (void)conv2dForward(graph, "layer seven", conv, x, weights, y);
+        FAIL("accepted");
+    } catch (const Error& error) {
+        const std::string text = error.what();
+        CHECK_NE(text.find("layer seven"), std::string::npos);
+        CHECK_NE(text.find("[1,2,8,7]"), std::string::npos);
+    }
+}
