@@ -1,0 +1,206 @@
+#include "passes/sgl_chunks.hpp"
+
+#include <cmath>
+
+namespace strandlight {
+
+namespace {
+
+constexpr std::uint32_t kLongestText = 4096;
+constexpr std::uint32_t kMaximumResolution = 4096;
+constexpr std::uint32_t kMaximumLobes = 64;
+constexpr std::uint64_t kCornerBytes = 20;
+constexpr std::uint64_t kTexelBytes = 20;
+
+float readFinite(ByteReader& reader, const char* what)
+{
+    const auto value = reader.read<float>();
+    if (!std::isfinite(value))
+        reader.fail(std::string(what) + " is not finite");
+    return value;
+}
+
+void expectBytes(const ByteReader& reader, std::uint64_t count, std::uint64_t each)
+{
+    // Divided, not multiplied: a broken count must not overflow.
+    if (reader.remaining() % each != 0 || reader.remaining() / each != count)
+        reader.fail("has " + std::to_string(reader.remaining()) + " bytes for " +
+                    std::to_string(count) + " entries of " + std::to_string(each));
+}
+
+} // namespace
+
+std::vector<std::uint8_t> encodeInfo(const BakeInfo& info)
+{
+    ByteWriter writer;
+    writer.writeString(info.scene.substr(0, kLongestText));
+    writer.writeString(info.fitMode.substr(0, kLongestText));
+    writer.write(info.geometryHash);
+    writer.write(info.environmentHash);
+    writer.write(info.lightfieldSize);
+    writer.write(info.samplesPerDirection);
+    writer.write(info.bounces);
+    writer.write(info.steps);
+    writer.write(info.seed);
+    writer.write(info.rmse);
+    return writer.take();
+}
+
+BakeInfo decodeInfo(ByteReader reader)
+{
+    BakeInfo info;
+    info.scene = reader.readString(kLongestText);
+    info.fitMode = reader.readString(kLongestText);
+    info.geometryHash = reader.read<std::uint64_t>();
+    info.environmentHash = reader.read<std::uint64_t>();
+    info.lightfieldSize = reader.read<std::uint32_t>();
+    info.samplesPerDirection = reader.read<std::uint32_t>();
+    info.bounces = reader.read<std::uint32_t>();
+    info.steps = reader.read<std::uint32_t>();
+    info.seed = reader.read<std::uint32_t>();
+    info.rmse = readFinite(reader, "rmse");
+    reader.finish();
+    return info;
+}
+
+std::vector<std::uint8_t> encodeAtlasSizes(const Atlas& atlas)
+{
+    ByteWriter writer;
+    writer.write(atlas.resolution);
+    writer.write(atlas.chartCount);
+    writer.write(static_cast<std::uint32_t>(atlas.usedTexCoord1));
+    writer.write(atlas.texelsPerMetre);
+    writer.write(static_cast<std::uint64_t>(atlas.corners.size()));
+    writer.write(static_cast<std::uint64_t>(atlas.texels.size()));
+    return writer.take();
+}
+
+Atlas decodeAtlasSizes(ByteReader reader, std::uint64_t& cornerCount, std::uint64_t& texelCount)
+{
+    Atlas atlas;
+    atlas.resolution = reader.read<std::uint32_t>();
+    atlas.chartCount = reader.read<std::uint32_t>();
+    const auto used = reader.read<std::uint32_t>();
+    atlas.usedTexCoord1 = used != 0;
+    atlas.texelsPerMetre = readFinite(reader, "texels per metre");
+    cornerCount = reader.read<std::uint64_t>();
+    texelCount = reader.read<std::uint64_t>();
+    reader.finish();
+    if (atlas.resolution == 0 || atlas.resolution > kMaximumResolution || used > 1 ||
+        cornerCount % 3 != 0 || texelCount > std::uint64_t(atlas.resolution) * atlas.resolution)
+        reader.fail("the sizes are impossible: resolution " + std::to_string(atlas.resolution) +
+                    ", " + std::to_string(cornerCount) + " corners, " + std::to_string(texelCount) +
+                    " texels");
+    return atlas;
+}
+
+std::vector<std::uint8_t> encodeCorners(const Atlas& atlas)
+{
+    ByteWriter writer;
+    for (const AtlasCorner& corner : atlas.corners)
+        for (const float value :
+             {corner.uv.x, corner.uv.y, corner.tangent.x, corner.tangent.y, corner.tangent.z})
+            writer.write(value);
+    return writer.take();
+}
+
+void decodeCorners(ByteReader reader, std::uint64_t count, Atlas& atlas)
+{
+    expectBytes(reader, count, kCornerBytes);
+    const auto side = static_cast<float>(atlas.resolution);
+    atlas.corners.resize(count);
+    for (AtlasCorner& corner : atlas.corners) {
+        for (int i = 0; i < 2; ++i)
+            corner.uv[i] = readFinite(reader, "a corner's uv");
+        for (int i = 0; i < 3; ++i)
+            corner.tangent[i] = readFinite(reader, "a corner's tangent");
+        if (corner.uv.x < 0.0f || corner.uv.y < 0.0f || corner.uv.x > side || corner.uv.y > side)
+            reader.fail("a corner lies outside the atlas");
+    }
+}
+
+std::vector<std::uint8_t> encodeTexels(const Atlas& atlas)
+{
+    ByteWriter writer;
+    for (const AtlasTexel& texel : atlas.texels) {
+        writer.write(static_cast<std::uint16_t>(texel.x));
+        writer.write(static_cast<std::uint16_t>(texel.y));
+        writer.write(texel.triangle);
+        writer.write(texel.barycentric.x);
+        writer.write(texel.barycentric.y);
+        writer.write(texel.chart);
+    }
+    return writer.take();
+}
+
+void decodeTexels(ByteReader reader, std::uint64_t count, Atlas& atlas)
+{
+    expectBytes(reader, count, kTexelBytes);
+    constexpr float kSlack = 1e-3f; // of rounding in the weights
+    std::int64_t last = -1;
+    atlas.texels.resize(count);
+    for (AtlasTexel& texel : atlas.texels) {
+        texel.x = reader.read<std::uint16_t>();
+        texel.y = reader.read<std::uint16_t>();
+        texel.triangle = reader.read<std::uint32_t>();
+        texel.barycentric.x = readFinite(reader, "a texel's weight");
+        texel.barycentric.y = readFinite(reader, "a texel's weight");
+        texel.chart = reader.read<std::uint32_t>();
+        const std::int64_t index = std::int64_t(texel.y) * atlas.resolution + texel.x;
+        const glm::vec2 w = texel.barycentric;
+        if (texel.x >= atlas.resolution || texel.y >= atlas.resolution || index <= last ||
+            texel.triangle >= atlas.corners.size() / 3 || texel.chart >= atlas.chartCount ||
+            w.x < -kSlack || w.y < -kSlack || w.x + w.y > 1.0f + kSlack)
+            reader.fail("texel " + std::to_string(&texel - atlas.texels.data()) +
+                        " is out of order or out of range");
+        last = index;
+    }
+}
+
+std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
+                                      std::uint64_t& clamped)
+{
+    const SglLobeCoding coding = chooseCoding(field, storage);
+    const std::size_t size = sglBytesPerLobe(storage);
+    ByteWriter writer;
+    writer.write(field.lobeCount);
+    writer.write(coding.amplitudeScale);
+    writer.write(coding.logSharpnessLow);
+    writer.write(coding.logSharpnessHigh);
+    const std::span<std::uint8_t> out = writer.extend(field.lobes.size() * size);
+    for (std::size_t i = 0; i < field.lobes.size(); ++i)
+        clamped += encodeLobe(field.lobes[i], coding, out.subspan(i * size, size));
+    return writer.take();
+}
+
+SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCount)
+{
+    SgField field;
+    field.lobeCount = reader.read<std::uint32_t>();
+    if (field.lobeCount == 0 || field.lobeCount > kMaximumLobes)
+        reader.fail("claims " + std::to_string(field.lobeCount) + " lobes per texel");
+    SglLobeCoding coding{.storage = storage};
+    coding.amplitudeScale = readFinite(reader, "the amplitude scale");
+    coding.logSharpnessLow = readFinite(reader, "the sharpness range");
+    coding.logSharpnessHigh = readFinite(reader, "the sharpness range");
+    if (!(coding.amplitudeScale > 0.0f))
+        reader.fail("the amplitude scale is not positive");
+    const std::size_t size = sglBytesPerLobe(storage);
+    expectBytes(reader, texelCount * field.lobeCount, size);
+
+    field.lobes.reserve(texelCount * field.lobeCount);
+    for (std::uint64_t i = 0; i < texelCount * field.lobeCount; ++i) {
+        const SgLobe lobe = decodeLobe(reader.take(size), coding);
+        const glm::vec3& a = lobe.amplitude;
+        const bool valid = std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z) &&
+                           std::abs(lobe.logSharpness) <= kSglMaximumLogSharpness &&
+                           std::abs(glm::length(lobe.axis) - 1.0f) < 0.1f;
+        if (!valid)
+            reader.fail("lobe " + std::to_string(i % field.lobeCount) + " of texel " +
+                        std::to_string(i / field.lobeCount) + " is not a light");
+        field.lobes.push_back(lobe);
+    }
+    return field;
+}
+
+} // namespace strandlight

@@ -1,0 +1,30 @@
+// The chunks of an .sgl file, each by itself: bytes to values and back.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "passes/sg_field.hpp"
+#include "passes/sgl_bytes.hpp"
+#include "passes/sgl_lobe.hpp"
+
+namespace strandlight {
+
+std::vector<std::uint8_t> encodeInfo(const BakeInfo& info);
+BakeInfo decodeInfo(ByteReader reader);
+
+// Sizes first: the number of corners and texels, which their own chunks must match.
+std::vector<std::uint8_t> encodeAtlasSizes(const Atlas& atlas);
+Atlas decodeAtlasSizes(ByteReader reader, std::uint64_t& cornerCount, std::uint64_t& texelCount);
+
+std::vector<std::uint8_t> encodeCorners(const Atlas& atlas);
+void decodeCorners(ByteReader reader, std::uint64_t count, Atlas& atlas);
+std::vector<std::uint8_t> encodeTexels(const Atlas& atlas);
+void decodeTexels(ByteReader reader, std::uint64_t count, Atlas& atlas);
+
+// Adds the number of clamped lobes to `clamped`. Throws Error for lobes that cannot be stored.
+std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
+                                      std::uint64_t& clamped);
+SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCount);
+
+} // namespace strandlight
