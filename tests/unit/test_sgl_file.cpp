@@ -2,9 +2,11 @@
 // refused.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <unistd.h>
+#include <utility>
 
 #include <doctest/doctest.h>
 
@@ -65,6 +67,24 @@ std::string errorOf(std::span<const std::uint8_t> bytes)
         return error.what();
     }
     return "";
+}
+
+// Makes the checksums right again after a change, as a hostile writer would.
+void repairChecksums(std::vector<std::uint8_t>& bytes)
+{
+    const auto put = [&](std::size_t at, std::uint32_t value) {
+        std::memcpy(&bytes[at], &value, 4);
+    };
+    const std::size_t chunkCount = bytes[24];
+    std::size_t offset = 32 + 24 * chunkCount;
+    for (std::size_t i = 0; i < chunkCount; ++i) {
+        std::uint64_t size = 0;
+        std::memcpy(&size, &bytes[32 + 24 * i + 16], 8);
+        put(32 + 24 * i + 4, crc32(std::span(std::as_const(bytes)).subspan(offset, size)));
+        offset += size;
+    }
+    put(28, 0);
+    put(28, crc32(std::span(std::as_const(bytes)).first(32 + 24 * chunkCount)));
 }
 
 float angleBetween(glm::vec3 a, glm::vec3 b)
@@ -238,6 +258,35 @@ TEST_CASE("sgl: every flipped bit is found")
     }
     CHECK(missed == 0);
     CHECK(errorOf(bytes).empty());
+}
+
+TEST_CASE("sgl: altered contents under right checksums give a bake in range or one error")
+{
+    const auto good = encodeSgl(makeBake(10, true), SglStorage::Fp16);
+    auto same = good;
+    repairChecksums(same);
+    REQUIRE(same == good);
+    const std::size_t contents = 32 + 24 * 6;
+    std::size_t refused = 0;
+    for (std::uint32_t round = 0; round < 4000; ++round) {
+        auto bytes = good;
+        const glm::uvec3 draw = gpu::hashPcg3({round, 1, 2});
+        // The sizes in the front, and the rest, in equal parts.
+        const std::size_t range = round % 2 ? 200 : bytes.size() - contents;
+        bytes[contents + draw.x % range] = static_cast<std::uint8_t>(draw.y);
+        bytes[contents + draw.z % range] = static_cast<std::uint8_t>(draw.y >> 8);
+        repairChecksums(bytes);
+        try {
+            const SgBake bake = decodeSgl(bytes, "test.sgl");
+            for (const AtlasTexel& texel : bake.atlas.texels)
+                CHECK(texel.triangle < bake.atlas.corners.size() / 3);
+            for (const SgLobe& lobe : bake.radiance.lobes)
+                CHECK(std::isfinite(lobe.amplitude.x + lobe.amplitude.y + lobe.amplitude.z));
+        } catch (const FileError&) {
+            ++refused;
+        }
+    }
+    CHECK(refused > 500);
 }
 
 TEST_CASE("sgl: errors name the file and the reason")
