@@ -63,6 +63,16 @@ STRANDLIGHT_FN float powerHeuristic(float own, float other)
     return 1.0f / (1.0f + r * r);
 }
 
+// Point n of a two-dimensional low-discrepancy sequence on the unit square, moved by `shift` around its torus.
+// Exact in integers, so the point does not depend on how far n is.
+// Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
+STRANDLIGHT_FN vec2 sequencePoint(uint n, vec2 shift)
+{
+    uint x = n * 3242174889u + uint(shift.x * 16777216.0f) * 256u;
+    uint y = n * 2447445414u + uint(shift.y * 16777216.0f) * 256u;
+    return vec2(float(x >> 8u) * (1.0f / 16777216.0f), float(y >> 8u) * (1.0f / 16777216.0f));
+}
+
 // One draw from an alias table: `u` picks the column and, by what is left of it, the entry.
 // Vose. A Linear Algorithm for Generating Random Numbers with a Given Distribution. 1991
 struct AliasDraw

@@ -48,8 +48,8 @@ void main()
     while (path.alive || (done < push.targetSample && path.trips < kTripsToStart)) {
         if (!path.alive) {
             path.sampleIndex = done;
-            vec3 jitter = uniform3(pixel, done, 0u, push.seed);
-            vec2 point = vec2(float(pixel % push.width), float(pixel / push.width)) + jitter.xy;
+            vec2 jitter = sequencePoint(done, uniform3(pixel, 0u, 0u, push.seed).xy);
+            vec2 point = vec2(float(pixel % push.width), float(pixel / push.width)) + jitter;
             startPath(path, push.camera.eye, cameraRayDirection(push.camera, point));
         }
         advancePath(path, context);
