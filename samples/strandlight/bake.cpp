@@ -20,6 +20,7 @@ struct Options
     SceneOptions scene;
     BakeSettings settings;
     std::string fit = toString(BakeSettings{}.fit);
+    std::string storage = "fp16";
     std::string output;
     std::string json;
 };
@@ -51,6 +52,10 @@ void addSettings(CLI::App& app, Options& o)
     addNumber(app, "--spp", s.samplesPerDirection, "Paths per direction", 1u, 65536u);
     addNumber(app, "--bounces", s.bounces, "Reflections on a path", 0u, 64u);
     addNumber(app, "--seed", s.seed, "Of the random numbers", 0u, 0xffffffffu);
+    app.add_option("--storage", o.storage, "fp16: 12 bytes per lobe; packed: 8")
+        ->type_name("FORM")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"fp16", "packed"}));
     app.add_flag("--resume", s.resume, "Go on from the checkpoint of an interrupted bake");
 }
 
@@ -61,7 +66,7 @@ std::filesystem::path checkpointOf(const std::string& output)
 }
 
 Json describe(const Options& o, const Context& context, const SgBake& bake,
-              const BakeStatistics& statistics, double seconds)
+              const BakeStatistics& statistics, const SglSaveReport& saved, double seconds)
 {
     const BakeSettings& s = o.settings;
     Json json = describeRun("bake", &context);
@@ -75,14 +80,15 @@ Json describe(const Options& o, const Context& context, const SgBake& bake,
                         {"steps", s.steps},
                         {"spp", s.samplesPerDirection},
                         {"bounces", s.bounces},
-                        {"seed", s.seed}};
+                        {"seed", s.seed},
+                        {"storage", o.storage}};
     json["result"] = {{"file", o.output},
-                      {"file_bytes", std::filesystem::file_size(o.output)},
+                      {"file_bytes", saved.fileBytes},
                       {"charts", bake.atlas.chartCount},
                       {"texels", statistics.texels},
                       {"skipped_texels", statistics.skippedTexels},
                       {"empty_texels", statistics.emptyTexels},
-                      {"bytes_per_texel", statistics.bytesPerTexel},
+                      {"bytes_per_texel", saved.lobeBytesPerTexel},
                       {"radiance_rmse", statistics.radianceRmse},
                       {"environment_rmse", statistics.environmentRmse},
                       {"peak_device_bytes", statistics.peakDeviceBytes},
@@ -94,22 +100,21 @@ Json describe(const Options& o, const Context& context, const SgBake& bake,
 }
 
 void print(const Options& o, const Context& context, const SgBake& bake,
-           const BakeStatistics& statistics, double seconds)
+           const BakeStatistics& statistics, const SglSaveReport& saved, double seconds)
 {
     std::printf("device    %s\n", context.device().name.c_str());
     std::printf("atlas     %ux%u, %u charts, %u texels with surface, %u of them inside geometry\n",
                 bake.atlas.resolution, bake.atlas.resolution, bake.atlas.chartCount,
                 statistics.texels, statistics.skippedTexels);
     std::printf("lobes     %u per texel, %llu bytes per texel, light field RMSE %.4g\n",
-                bake.radiance.lobeCount, static_cast<unsigned long long>(statistics.bytesPerTexel),
+                bake.radiance.lobeCount, static_cast<unsigned long long>(saved.lobeBytesPerTexel),
                 statistics.radianceRmse);
     if (bake.environment)
         std::printf("window    %u lobes per texel for the environment, RMSE %.4g\n",
                     bake.environment->lobeCount, statistics.environmentRmse);
     std::printf("seconds   %.1f: atlas %.1f, capture %.1f, fit %.1f\n", seconds,
                 statistics.atlasSeconds, statistics.captureSeconds, statistics.fitSeconds);
-    std::printf("wrote     %s, %s\n", o.output.c_str(),
-                bytesText(std::filesystem::file_size(o.output)).c_str());
+    std::printf("wrote     %s, %s\n", o.output.c_str(), bytesText(saved.fileBytes).c_str());
 }
 
 int run(Options& o)
@@ -124,12 +129,13 @@ int run(Options& o)
 
     BakeStatistics statistics;
     const SgBake bake = bakeScene(context, scene, o.settings, &statistics);
-    saveSgl(o.output, bake);
+    const SglSaveReport saved =
+        saveSgl(o.output, bake, o.storage == "packed" ? SglStorage::Packed : SglStorage::Fp16);
     std::filesystem::remove(o.settings.checkpoint);
 
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    print(o, context, bake, statistics, elapsed.count());
-    writeJson(o.json, describe(o, context, bake, statistics, elapsed.count()));
+    print(o, context, bake, statistics, saved, elapsed.count());
+    writeJson(o.json, describe(o, context, bake, statistics, saved, elapsed.count()));
     return 0;
 }
 

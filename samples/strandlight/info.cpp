@@ -1,6 +1,7 @@
 // strandlight info: devices, a scene or a bake.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "engine/base/error.hpp"
@@ -141,11 +142,14 @@ Json showBake(const std::string& path)
     const SgBake bake = loadSgl(path);
     const BakeInfo& info = bake.info;
     const std::uint32_t environmentLobes = bake.environment ? bake.environment->lobeCount : 0;
+    const std::uint64_t fileBytes = std::filesystem::file_size(path);
     const double bytesPerTexel =
-        double(kStoredLobeBytes) * (bake.radiance.lobeCount + environmentLobes);
+        double(fileBytes) / double(std::max<std::size_t>(bake.atlas.texels.size(), 1));
     std::printf("bake       of %s\n", info.scene.c_str());
-    std::printf("lobes      %u per texel, %u for the environment: %.0f bytes per texel\n",
-                bake.radiance.lobeCount, environmentLobes, bytesPerTexel);
+    std::printf("lobes      %u per texel, %u for the environment\n", bake.radiance.lobeCount,
+                environmentLobes);
+    std::printf("file       %s, %.1f bytes per texel, atlas included\n",
+                bytesText(fileBytes).c_str(), bytesPerTexel);
     std::printf("atlas      %ux%u, %u charts, %zu texels, %s\n", bake.atlas.resolution,
                 bake.atlas.resolution, bake.atlas.chartCount, bake.atlas.texels.size(),
                 bake.atlas.usedTexCoord1 ? "TEXCOORD_1" : "own charts");
@@ -157,6 +161,7 @@ Json showBake(const std::string& path)
     return {{"scene", info.scene},
             {"lobes", bake.radiance.lobeCount},
             {"environment_lobes", environmentLobes},
+            {"file_bytes", fileBytes},
             {"bytes_per_texel", bytesPerTexel},
             {"atlas", bake.atlas.resolution},
             {"charts", bake.atlas.chartCount},
