@@ -25,16 +25,6 @@ struct Options
     std::string json;
 };
 
-template <class T>
-void addNumber(CLI::App& app, const std::string& name, T& value, const std::string& meaning,
-               T lowest, T highest)
-{
-    app.add_option(name, value, meaning)
-        ->type_name("N")
-        ->capture_default_str()
-        ->check(CLI::Range(lowest, highest));
-}
-
 void addSettings(CLI::App& app, Options& o)
 {
     BakeSettings& s = o.settings;

@@ -57,6 +57,17 @@ Size parseSize(const std::string& text);                          // "640x480"
 Camera chooseCamera(const Scene& scene, const std::string& text); // "": the scene's own
 
 void addJsonOption(CLI::App& app, std::string& path);
+// A whole number with limits.
+template <class T>
+void addNumber(CLI::App& app, const std::string& name, T& value, const std::string& meaning,
+               T lowest, T highest)
+{
+    app.add_option(name, value, meaning)
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(lowest, highest));
+}
+
 void addExamples(CLI::App& app, const std::string& lines);
 
 } // namespace strandlight::cli
