@@ -28,7 +28,8 @@ void addAdamPass(RenderGraph& graph, ParameterIds& parameters, const AdamSetting
     const BufferId moment1 = parameters.moment1 = pass.write(parameters.moment1);
     const BufferId moment2 = parameters.moment2 = pass.write(parameters.moment2);
     const BufferId counters = parameters.counters = pass.write(parameters.counters);
-    pass.dispatch(kernels::adam, {count, 1, 1}, push,
+    pass.dispatch(kernels::adam, {(count + 31) / 32 * 8, 1, 1}, push, // four elements each
+
                   {gradient, values, moment1, moment2, values, moment1, moment2, status, counters});
 }
 

@@ -65,11 +65,12 @@ TensorId sgMixtureForward(RenderGraph& graph, const SgMixtureDesc& desc, const T
     gpu::SgMixturePush push = pushOf(desc);
     const std::uint32_t slice = imagesPerDispatch(desc);
     const std::uint32_t tile = kDirectionTile * 8;
+    const bool lanes = graph.context().subgroupSize() >= 8;
     for (; push.firstImage < desc.images; push.firstImage += slice)
         pass.dispatch(kernels::sg_mixture,
                       {(desc.directions + tile - 1) / tile * 8,
                        std::min(slice, desc.images - push.firstImage), 1},
-                      push, {from, along, to});
+                      push, {from, along, to}, {lanes ? 1u : 0u});
     return radiance.as(to);
 }
 
@@ -87,10 +88,11 @@ TensorId sgMixtureBackward(RenderGraph& graph, const SgMixtureDesc& desc, const 
     const BufferId to = pass.write(dRaw.buffer);
     gpu::SgMixturePush push = pushOf(desc);
     const std::uint32_t slice = imagesPerDispatch(desc);
+    const bool lanes = graph.context().subgroupSize() >= 8;
     for (; push.firstImage < desc.images; push.firstImage += slice)
         pass.dispatch(kernels::sg_mixture_backward,
                       {std::min(slice, desc.images - push.firstImage) * desc.lobes, 1, 1}, push,
-                      {values, along, from, to});
+                      {values, along, from, to}, {lanes && desc.lobes % 8 == 0 ? 1u : 0u});
     return dRaw.as(to);
 }
 

@@ -20,18 +20,17 @@ float nnExp(float x)
     return x == x ? value : x;
 }
 
-// ln(1 + x) for x >= 0: 1 + x = 2^k (1 + f), ln(1 + f) = 2 atanh(f / (2 + f)).
+// ln(1 + x) for x >= 0: 1 + x = 2^k (1 + f), ln(1 + f) = 2 atanh(f / (2 + f)). For k = 0, f is x itself, so what the sum
+// 1 + x rounds away matters only where the logarithm is above 0.34.
 float nnLog1p(float x)
 {
-    precise float u = 1.0 + x;
-    precise float lost = x - (u - 1.0); // what the sum above rounded away, for x < 1
-    uint bits = floatBitsToUint(u);
-    int k = int((bits + 0x004afb0du) >> 23) - 127; // 1 + f in [sqrt(1/2), sqrt(2))
-    precise float f = uintBitsToFloat(bits - (uint(k) << 23)) - 1.0;
+    uint bits = floatBitsToUint(1.0 + x);
+    uint k = ((bits + 0x004afb0du) >> 23) - 127u; // 1 + f in [sqrt(1/2), sqrt(2))
+    float f = k == 0u ? x : uintBitsToFloat(bits - (k << 23)) - 1.0;
     float s = f / (2.0 + f);
     float z = s * s;
     float series = 2.0 * s * (1.0 + z * (1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0))))));
-    float value = float(k) * 0.69314718055994531 + (series + (x < 1.0 ? lost / u : 0.0));
+    float value = float(k) * 0.69314718055994531 + series;
     return (bits & 0x7f800000u) == 0x7f800000u ? x : value;
 }
 

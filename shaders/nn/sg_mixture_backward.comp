@@ -1,17 +1,36 @@
 // Gradient of the mixture and its decoder: one invocation gathers over all directions of its lobe, in order.
-// dRaw is overwritten. Saved: raw (decoded again here, which is cheaper than loading the lobe).
+// With SHUFFLE, eight lanes load eight directions and hand them round. dRaw is overwritten. Saved: raw (decoded again here, which is cheaper than loading the lobe).
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 
 #include "nn/sg_lobe.glsl"
 
 layout(local_size_x = 8) in;
+layout(constant_id = 0) const uint SHUFFLE = 0; // 1: the lobes are a multiple of eight, so a workgroup has one image
 layout(binding = 0, r32f) uniform readonly imageBuffer raw;        // [N,L,7]
 layout(binding = 1, r32f) uniform readonly imageBuffer directions; // [N,D,3] or [D,3], unit
 layout(binding = 2, r32f) uniform readonly imageBuffer dRadiance;  // strides as in the forward pass
 layout(binding = 3, scalar) writeonly buffer DRaw { float dRaw[]; };
 layout(push_constant, scalar) uniform Push { SgMixturePush push; };
+
+const uint kLanes = 8;
+
+vec3 loadDirection(int list, uint d)
+{
+    int at = list + int(d) * 3;
+    return vec3(imageLoad(directions, at).x, imageLoad(directions, at + 1).x, imageLoad(directions, at + 2).x);
+}
+
+vec3 loadOut(int image, uint d)
+{
+    int at = image + int(d * push.directionStride);
+    int step = int(push.channelStride);
+    return vec3(imageLoad(dRadiance, at).x, imageLoad(dRadiance, at + step).x, imageLoad(dRadiance, at + 2 * step).x);
+}
 
 void main()
 {
@@ -32,19 +51,30 @@ void main()
     vec3 dAmplitude = vec3(0.0);
     float dSharpness = 0.0;
     int from = int(n * 3 * push.directions);
-    int directionAt = int(n * push.directionImageStride);
-    for (uint d = 0; d < push.directions; ++d, from += int(push.directionStride), directionAt += 3) {
-        vec3 direction = vec3(imageLoad(directions, directionAt).x, imageLoad(directions, directionAt + 1).x,
-                              imageLoad(directions, directionAt + 2).x);
-        vec3 dOut = vec3(imageLoad(dRadiance, from).x, imageLoad(dRadiance, from + int(push.channelStride)).x,
-                         imageLoad(dRadiance, from + 2 * int(push.channelStride)).x);
-        vec3 chord = direction - axis;
-        float squared = dot(chord, chord);
-        float weight = nnExp(-0.5 * sharpness * squared);
-        float dExponent = dot(dOut, amplitude) * weight;
-        dAmplitude += dOut * weight;
-        dSharpness -= 0.5 * squared * dExponent;
-        dAxis += dExponent * chord;
+    int along = int(n * push.directionImageStride);
+    for (uint block = 0; block < push.directions; block += kLanes) {
+        vec3 ownDirection = vec3(0.0);
+        vec3 ownOut = vec3(0.0);
+        if (SHUFFLE != 0) {
+            uint own = min(block + gl_SubgroupInvocationID % kLanes, push.directions - 1);
+            ownDirection = loadDirection(along, own);
+            ownOut = loadOut(from, own);
+        }
+        [[unroll]] for (uint k = 0; k < kLanes; ++k) {
+            // Past the last direction the last one is read again, with no gradient.
+            bool there = block + k < push.directions;
+            uint d = min(block + k, push.directions - 1);
+            vec3 direction = SHUFFLE != 0 ? subgroupShuffle(ownDirection, k) : loadDirection(along, d);
+            vec3 dOut = SHUFFLE != 0 ? subgroupShuffle(ownOut, k) : loadOut(from, d);
+            dOut = there ? dOut : vec3(0.0);
+            vec3 chord = direction - axis;
+            float squared = dot(chord, chord);
+            float weight = nnExp(-0.5 * sharpness * squared);
+            float dExponent = dot(dOut, amplitude) * weight;
+            dAmplitude += dOut * weight;
+            dSharpness -= 0.5 * squared * dExponent;
+            dAxis += dExponent * chord;
+        }
     }
     dAxis *= sharpness;
 
