@@ -233,7 +233,8 @@ LightFieldModel freeSgModel(const FitProblem& problem, SgField field, std::strin
 {
     LightFieldModel out;
     out.name = std::move(name);
-    out.bytesPerTexel = double(field.lobeCount) * 7.0 * 2.0;
+    out.bytesPerTexel =
+        double(field.lobeCount) * 12.0; // axis octahedral 2 x 16 bits, the rest fp16
     out.seconds = seconds;
     out.reconstruct = [&problem, shared = std::make_shared<SgField>(std::move(field))](
                           const glm::uvec4& texels, const glm::vec4& weights,

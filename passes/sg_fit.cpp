@@ -80,7 +80,7 @@ SgField runDirect(Context& context, const FitProblem& problem, const FitSettings
                   const FitState& start, const FitCheckpoint* checkpoint, FitStatistics& statistics)
 {
     if (start.parameters.size() !=
-        std::size_t(problem.lobes) * problem.texelCount() * gpu::kSgFitComponents)
+        std::size_t(problem.lobes) * problem.texelCount() * gpu::kSgFitLobeFloats)
         throw Error("fit: a state of " + std::to_string(start.parameters.size()) +
                     " parameters does not belong to " + std::to_string(problem.texelCount()) +
                     " texels of " + std::to_string(problem.lobes) + " lobes");

@@ -144,7 +144,7 @@ FitProblem buildFitProblem(const Atlas& atlas, const CpuLightfield& field, Light
     problem.size = field.size;
     problem.directions = fitDirections(field.size);
     // Broad enough for constant light; a lobe narrower than a cell of the image cannot be seen.
-    problem.minimumLogSharpness = -3.0f;
+    problem.minimumLogSharpness = -4.0f;
     problem.maximumLogSharpness = std::log(float(directions));
 
     // Transpose, and mean radiance per texel.

@@ -85,8 +85,7 @@ void startFromCommonLobes(const FitProblem& problem, FitStart start, Parameters&
     const std::uint32_t bias = parameters.layout().slice("head.bias").offset;
     for (std::uint32_t k = 0; k < problem.lobes; ++k) {
         const auto component = [&](std::uint32_t c) {
-            return state
-                .parameters[(std::size_t(k) * gpu::kSgFitComponents + c) * problem.texelCount()];
+            return state.parameters[gpu::sgFitIndex(k, c, 0, problem.texelCount())];
         };
         float* raw = values.data() + bias + std::size_t(k) * kRawComponents;
         for (std::uint32_t c = 0; c < 3; ++c)

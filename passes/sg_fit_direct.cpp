@@ -133,10 +133,10 @@ DirectFit::DirectFit(Context& context, const FitProblem& problem, const FitSetti
     : context_(&context), step_(start.step), skippedBefore_(start.skippedSteps)
 {
     const std::uint64_t texels = problem.texelCount();
-    const std::uint64_t planes = std::uint64_t(problem.lobes) * gpu::kSgFitComponents;
-    STRANDLIGHT_ASSERT_EQ(start.parameters.size(), planes * texels);
-    checkLimit(context, "lobe parameters", planes * texels);
-    checkLimit(context, "cell gradients", planes * problem.cells.cellCount);
+    const std::uint64_t floats = std::uint64_t(problem.lobes) * gpu::kSgFitLobeFloats;
+    STRANDLIGHT_ASSERT_EQ(start.parameters.size(), floats * texels);
+    checkLimit(context, "lobe parameters", floats * texels);
+    checkLimit(context, "cell gradients", floats * problem.cells.cellCount);
 
     shape_.texelCount = problem.texelCount();
     shape_.cellCount = problem.cells.cellCount;
@@ -161,7 +161,7 @@ DirectFit::DirectFit(Context& context, const FitProblem& problem, const FitSetti
         buffer = Buffer::from(context, start.parameters, "fit parameters");
     moments1_ = Buffer::from(context, start.firstMoments, "fit first moments");
     moments2_ = Buffer::from(context, start.secondMoments, "fit second moments");
-    gradients_ = Buffer(context, planes * shape_.cellCount * 4, "fit gradients");
+    gradients_ = Buffer(context, floats * shape_.cellCount * 4, "fit gradients");
     losses_ = Buffer(context, std::uint64_t(shape_.cellCount) * 4, "fit losses");
     counters_ = Buffer(context, 4, "fit counters");
 }

@@ -48,10 +48,10 @@ struct SgFitStepIds
     BufferId neighbours;          // uint [4, texel]
     BufferId directions;          // vec4 [direction]
     BufferId scales;              // float [texel]
-    BufferId before, after;       // float [lobe * 7 + component, texel]; swapped by every step
-    BufferId moments1;            // float [lobe * 7 + component, texel]
-    BufferId moments2;            // float [lobe * 3 + group, texel]
-    BufferId gradients;           // float [lobe * 7 + component, cell]
+    BufferId before, after;       // vec4 [lobe * 2 + half, texel]; swapped by every step
+    BufferId moments1;            // vec4 [lobe * 2 + half, texel]
+    BufferId moments2;            // vec4 [lobe, texel] (axis, sharpness, amplitude, 0)
+    BufferId gradients;           // vec4 [lobe * 2 + half, cell]
     BufferId losses;              // float [cell]
     BufferId counters;            // uint [1] updates refused because a gradient was not finite
 };

@@ -33,15 +33,15 @@ struct InterpolatedLobe
     dvec3 amplitude;
 };
 
-// Planar parameters, addressed by lobe and texel.
-struct Planes
+// Parameters addressed by lobe, component and texel.
+struct LobeBlock
 {
     const std::vector<double>& values;
-    std::size_t texelCount;
+    std::uint32_t texelCount;
 
     double at(std::uint32_t lobe, std::uint32_t component, std::uint32_t texel) const
     {
-        return values[(std::size_t(lobe) * gpu::kSgFitComponents + component) * texelCount + texel];
+        return values[gpu::sgFitIndex(lobe, component, texel, texelCount)];
     }
     dvec3 at3(std::uint32_t lobe, std::uint32_t component, std::uint32_t texel) const
     {
@@ -50,8 +50,8 @@ struct Planes
     }
 };
 
-InterpolatedLobe interpolate(const Planes& parameters, std::uint32_t lobe, const glm::uvec4& texel,
-                             const std::array<double, 4>& weight)
+InterpolatedLobe interpolate(const LobeBlock& parameters, std::uint32_t lobe,
+                             const glm::uvec4& texel, const std::array<double, 4>& weight)
 {
     dvec3 axis(0.0), amplitude(0.0);
     double logSharpness = 0.0;
@@ -108,11 +108,11 @@ FitCellGradients sgFitCellsReference(const FitProblem& problem, const FitStateRe
 {
     const std::uint32_t directionCount = problem.directionCount();
     const std::uint32_t perStep = fitDirectionsPerStep(settings, directionCount);
-    const std::size_t cellCount = problem.cells.cellCount;
-    const std::size_t texelCount = problem.texelCount();
-    const Planes parameters{state.parameters, texelCount};
+    const std::uint32_t cellCount = problem.cells.cellCount;
+    const std::uint32_t texelCount = problem.texelCount();
+    const LobeBlock parameters{state.parameters, texelCount};
     FitCellGradients out;
-    out.gradients.assign(std::size_t(problem.lobes) * gpu::kSgFitComponents * cellCount, 0.0);
+    out.gradients.assign(std::size_t(problem.lobes) * gpu::kSgFitLobeFloats * cellCount, 0.0);
     out.losses.assign(cellCount, 0.0);
     std::vector<InterpolatedLobe> lobes(problem.lobes);
     std::vector<double> exponent(problem.lobes), value(problem.lobes);
@@ -143,8 +143,9 @@ FitCellGradients sgFitCellsReference(const FitProblem& problem, const FitStateRe
             const dvec3 direction = glm::normalize(dvec3(problem.directions[d]));
             dvec3 target(0.0), sum(0.0);
             for (std::size_t c = 0; c < 4; ++c)
-                target += known[c] *
-                          dvec3(gpu::unpackRgb9e5(problem.images[d * texelCount + texel[int(c)]]));
+                target +=
+                    known[c] * dvec3(gpu::unpackRgb9e5(
+                                   problem.images[std::size_t(d) * texelCount + texel[int(c)]]));
             for (std::uint32_t k = 0; k < problem.lobes; ++k) {
                 const dvec3 chord = direction - lobes[k].axis;
                 exponent[k] = -0.5 * lobes[k].sharpness * glm::dot(chord, chord);
@@ -174,8 +175,7 @@ FitCellGradients sgFitCellsReference(const FitProblem& problem, const FitStateRe
                 dAxis.x,       dAxis.y,       dAxis.z,      g.sharpness,
                 g.amplitude.x, g.amplitude.y, g.amplitude.z};
             for (std::uint32_t c = 0; c < gpu::kSgFitComponents; ++c)
-                out.gradients[(std::size_t(k) * gpu::kSgFitComponents + c) * cellCount + cell] =
-                    components[c];
+                out.gradients[gpu::sgFitIndex(k, c, cell, cellCount)] = components[c];
         }
     }
     return out;
@@ -184,17 +184,19 @@ FitCellGradients sgFitCellsReference(const FitProblem& problem, const FitStateRe
 std::vector<double> sgFitGatherReference(const FitProblem& problem, const FitCellGradients& cells,
                                          std::uint32_t step, const FitSettings& settings)
 {
-    const std::size_t texelCount = problem.texelCount();
-    const std::size_t cellCount = problem.cells.cellCount;
-    const std::size_t planes = std::size_t(problem.lobes) * gpu::kSgFitComponents;
-    std::vector<double> gradient(planes * texelCount, 0.0);
+    const std::uint32_t texelCount = problem.texelCount();
+    const std::uint32_t cellCount = problem.cells.cellCount;
+    std::vector<double> gradient(std::size_t(problem.lobes) * gpu::kSgFitLobeFloats * texelCount,
+                                 0.0);
     for (std::uint32_t cell = 0; cell < cellCount; ++cell) {
         const std::array<double, 4> weight = cornerWeights(cell, step, settings);
         const glm::uvec4 texel = problem.cells.cornersOf(cell);
-        for (std::size_t plane = 0; plane < planes; ++plane)
-            for (std::size_t c = 0; c < 4; ++c)
-                gradient[plane * texelCount + texel[int(c)]] +=
-                    weight[c] * cells.gradients[plane * cellCount + cell];
+        for (std::uint32_t lobe = 0; lobe < problem.lobes; ++lobe)
+            for (std::uint32_t component = 0; component < gpu::kSgFitComponents; ++component)
+                for (std::size_t c = 0; c < 4; ++c)
+                    gradient[gpu::sgFitIndex(lobe, component, texel[int(c)], texelCount)] +=
+                        weight[c] *
+                        cells.gradients[gpu::sgFitIndex(lobe, component, cell, cellCount)];
     }
     return gradient;
 }
@@ -202,7 +204,7 @@ std::vector<double> sgFitGatherReference(const FitProblem& problem, const FitCel
 namespace {
 
 // Adds d/dp of smoothness/2 * (difference to each neighbour)^2, per lobe and texel.
-void addSmoothness(const FitProblem& problem, const Planes& parameters, double smoothness,
+void addSmoothness(const FitProblem& problem, const LobeBlock& parameters, double smoothness,
                    std::uint32_t lobe, std::uint32_t texel, double gradient[gpu::kSgFitComponents])
 {
     for (std::size_t n = 0; n < 4; ++n) {
@@ -227,10 +229,10 @@ void addSmoothness(const FitProblem& problem, const Planes& parameters, double s
 void sgFitUpdateReference(const FitProblem& problem, const FitCellGradients& cells,
                           const FitSettings& settings, FitStateReference& state)
 {
-    const std::size_t texelCount = problem.texelCount();
+    const std::uint32_t texelCount = problem.texelCount();
     const std::vector<double> gathered = sgFitGatherReference(problem, cells, state.step, settings);
     const std::vector<double> before = state.parameters;
-    const Planes parameters{before, texelCount};
+    const LobeBlock parameters{before, texelCount};
     const double rate = fitLearningRate(settings, state.step);
     const double t = double(state.step) + 1.0;
     const double correction1 = 1.0 / (1.0 - std::pow(double(gpu::kSgFitBeta1), t));
@@ -239,7 +241,7 @@ void sgFitUpdateReference(const FitProblem& problem, const FitCellGradients& cel
     for (std::uint32_t lobe = 0; lobe < problem.lobes; ++lobe) {
         for (std::uint32_t texel = 0; texel < texelCount; ++texel) {
             const auto index = [&](std::uint32_t component) {
-                return (std::size_t(lobe) * gpu::kSgFitComponents + component) * texelCount + texel;
+                return gpu::sgFitIndex(lobe, component, texel, texelCount);
             };
             const double scale = std::abs(double(problem.scales[texel]));
             dvec3 axis = parameters.at3(lobe, gpu::kSgFitAxis, texel);
@@ -265,9 +267,9 @@ void sgFitUpdateReference(const FitProblem& problem, const FitCellGradients& cel
                                          double(gpu::kSgFitAmplitudeRelative) * brightest;
             double rates[gpu::kSgFitGroups] = {rate, rate, rate * amplitudeStep};
             for (std::uint32_t g = 0; g < gpu::kSgFitGroups; ++g) {
-                double& v =
-                    state.secondMoments[(std::size_t(lobe) * gpu::kSgFitGroups + g) * texelCount +
-                                        texel];
+                double& v = state.secondMoments[(std::size_t(lobe) * texelCount + texel) *
+                                                    gpu::kSgFitMomentFloats +
+                                                g];
                 v = double(gpu::kSgFitBeta2) * v + (1.0 - double(gpu::kSgFitBeta2)) * squares[g];
                 rates[g] /= std::sqrt(v * correction2) + double(gpu::kSgFitAdamEpsilon);
             }

@@ -14,9 +14,9 @@ namespace strandlight {
 struct FitStateReference
 {
     std::uint32_t step = 0;
-    std::vector<double> parameters;    // [lobe * 7 + component, texel]
+    std::vector<double> parameters;    // [lobe * 2 + half, texel, 4]
     std::vector<double> firstMoments;  // the same
-    std::vector<double> secondMoments; // [lobe * 3 + group, texel]
+    std::vector<double> secondMoments; // [lobe, texel, 4]
 };
 
 FitStateReference toReference(const FitState& state);
@@ -26,7 +26,7 @@ FitState fromReference(const FitStateReference& state);
 struct FitCellGradients
 {
     std::vector<double>
-        gradients; // [lobe * 7 + component, cell], with respect to the interpolated lobe
+        gradients;              // [lobe * 2 + half, cell, 4], with respect to the interpolated lobe
     std::vector<double> losses; // [cell]
     double loss() const;        // sum over cells
 };
@@ -34,8 +34,8 @@ struct FitCellGradients
 FitCellGradients sgFitCellsReference(const FitProblem& problem, const FitStateReference& state,
                                      const FitSettings& settings);
 
-// dL/d(parameters) of the summed loss of the cells, through the bilinear weights. [lobe * 7 +
-// component, texel]
+// dL/d(parameters) of the summed loss of the cells, through the bilinear weights. [lobe * 2 + half,
+// texel, 4]
 std::vector<double> sgFitGatherReference(const FitProblem& problem, const FitCellGradients& cells,
                                          std::uint32_t step, const FitSettings& settings);
 

@@ -1,4 +1,4 @@
-// Where the direct fit starts, and the way back from its planes to lobes.
+// Where the direct fit starts, and the way back from its blocks to lobes.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -12,9 +12,10 @@
 namespace strandlight {
 namespace {
 
-std::size_t plane(const FitProblem& problem, std::uint32_t lobe, std::uint32_t component)
+std::size_t indexOf(const FitProblem& problem, std::uint32_t texel, std::uint32_t lobe,
+                    std::uint32_t component)
 {
-    return (std::size_t(lobe) * gpu::kSgFitComponents + component) * problem.texelCount();
+    return gpu::sgFitIndex(lobe, component, texel, problem.texelCount());
 }
 
 // One broad lobe for what is constant, the others on a golden-angle spiral over the hemisphere,
@@ -26,7 +27,7 @@ std::vector<SgLobe> fibonacciLobes(std::uint32_t count)
     const std::uint32_t broad = count > 1 ? 1 : 0;
     std::vector<SgLobe> lobes(count);
     if (broad == 1) {
-        lobes[0].logSharpness = std::log(0.1f);
+        lobes[0].logSharpness = std::log(0.05f);
         lobes[0].amplitude = glm::vec3(0.75f);
     }
     for (std::uint32_t k = broad; k < count; ++k) {
@@ -77,10 +78,10 @@ std::vector<SgLobe> clusterLobes(const FitProblem& problem)
 
 void resizeMoments(const FitProblem& problem, FitState& state)
 {
-    const std::size_t planes = std::size_t(problem.lobes) * problem.texelCount();
-    state.parameters.resize(planes * gpu::kSgFitComponents);
-    state.firstMoments.assign(planes * gpu::kSgFitComponents, 0.0f);
-    state.secondMoments.assign(planes * gpu::kSgFitGroups, 0.0f);
+    const std::size_t lobes = std::size_t(problem.lobes) * problem.texelCount();
+    state.parameters.assign(lobes * gpu::kSgFitLobeFloats, 0.0f);
+    state.firstMoments.assign(lobes * gpu::kSgFitLobeFloats, 0.0f);
+    state.secondMoments.assign(lobes * gpu::kSgFitMomentFloats, 0.0f);
 }
 
 void storeLobe(const FitProblem& problem, FitState& state, std::uint32_t texel, std::uint32_t lobe,
@@ -90,7 +91,7 @@ void storeLobe(const FitProblem& problem, FitState& state, std::uint32_t texel, 
         value.axis.x,      value.axis.y,      value.axis.z,     value.logSharpness,
         value.amplitude.x, value.amplitude.y, value.amplitude.z};
     for (std::uint32_t c = 0; c < gpu::kSgFitComponents; ++c)
-        state.parameters[plane(problem, lobe, c) + texel] = components[c];
+        state.parameters[indexOf(problem, texel, lobe, c)] = components[c];
 }
 
 } // namespace
@@ -140,7 +141,7 @@ SgField fieldFromState(const FitProblem& problem, const FitState& state)
     for (std::uint32_t t = 0; t < problem.texelCount(); ++t) {
         for (std::uint32_t k = 0; k < problem.lobes; ++k) {
             const auto value = [&](std::uint32_t component) {
-                return state.parameters[plane(problem, k, component) + t];
+                return state.parameters[indexOf(problem, t, k, component)];
             };
             field.lobes[std::size_t(t) * problem.lobes + k] = {
                 {value(0), value(1), value(2)}, value(3), {value(4), value(5), value(6)}};

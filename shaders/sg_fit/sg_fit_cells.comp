@@ -13,23 +13,12 @@ layout(constant_id = 0) const uint kLobes = 8;
 layout(binding = 0, r32ui) readonly uniform uimageBuffer corners;    // [4, cell] texel
 layout(binding = 1, r32ui) readonly uniform uimageBuffer images;     // [direction, texel of this chunk] RGB9E5
 layout(binding = 2, rgba32f) readonly uniform imageBuffer directions; // [direction] (unit vector, share of solid angle)
-layout(binding = 3, r32f) readonly uniform imageBuffer parameters;   // [lobe * 7 + component, texel]
+layout(binding = 3, rgba32f) readonly uniform imageBuffer parameters; // [lobe * 2 + half, texel]
 layout(binding = 4, r32f) readonly uniform imageBuffer scales;       // [texel] mean radiance, negative: no image
-layout(binding = 5, scalar) writeonly buffer Gradients { float gradients[]; }; // [lobe * 7 + component, cell]
-layout(binding = 6, scalar) writeonly buffer Losses { float losses[]; };       // [cell]
+layout(binding = 5, scalar) writeonly buffer Gradients { vec4 gradients[]; }; // [lobe * 2 + half, cell]
+layout(binding = 6, scalar) writeonly buffer Losses { float losses[]; };      // [cell]
 
 layout(push_constant, scalar) uniform Push { SgFitCellPush push; };
-
-float parameter(uint lobe, uint component, uint texel)
-{
-    return imageLoad(parameters, int((lobe * kSgFitComponents + component) * push.texelCount + texel)).x;
-}
-
-vec3 parameter3(uint lobe, uint component, uint texel)
-{
-    return vec3(parameter(lobe, component, texel), parameter(lobe, component + 1u, texel),
-                parameter(lobe, component + 2u, texel));
-}
 
 void main()
 {
@@ -59,28 +48,29 @@ void main()
     vec3 axis[kLobes];
     float axisLength[kLobes];
     float sharpness[kLobes];
+    float steepness[kLobes]; // sharpness / ln 2
     vec3 amplitude[kLobes];
     [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
-        vec3 axisSum = vec3(0.0);
-        float logSharpness = 0.0;
+        vec4 first = vec4(0.0); // axis, ln sharpness
         amplitude[k] = vec3(0.0);
         [[unroll]] for (uint c = 0u; c < 4u; ++c) {
-            axisSum += weight[c] * parameter3(k, kSgFitAxis, texel[c]);
-            logSharpness += weight[c] * parameter(k, kSgFitSharpness, texel[c]);
-            amplitude[k] += weight[c] * parameter3(k, kSgFitAmplitude, texel[c]);
+            int index = int(k * 2u * push.texelCount + texel[c]);
+            first += weight[c] * imageLoad(parameters, index);
+            amplitude[k] += weight[c] * imageLoad(parameters, index + int(push.texelCount)).xyz;
         }
-        axisLength[k] = max(length(axisSum), kSgFitShortestAxis);
-        axis[k] = axisSum / axisLength[k];
-        sharpness[k] = exp(logSharpness);
+        axisLength[k] = max(length(first.xyz), kSgFitShortestAxis);
+        axis[k] = first.xyz / axisLength[k];
+        sharpness[k] = exp(first.w);
+        steepness[k] = sharpness[k] * 1.44269504;
     }
 
     // Loss and gradient over the directions of this step.
-    vec3 towards[kLobes]; // sum of b d, where b = dL/d(lobe value) * lobe value / amplitude
-    float dSharpness[kLobes];
+    vec3 towards[kLobes]; // sum of b d, where b = dL/d(ln value)
+    float total[kLobes];  // sum of b
     vec3 dAmplitude[kLobes];
     [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
         towards[k] = vec3(0.0);
-        dSharpness[k] = 0.0;
+        total[k] = 0.0;
         dAmplitude[k] = vec3(0.0);
     }
     float loss = 0.0;
@@ -95,13 +85,12 @@ void main()
             target += known[c] * unpackRgb9e5(word);
         }
 
-        float exponent[kLobes];
+        // Sharpness is at most the number of directions, so 1 - cos keeps enough digits here: the error of a value is
+        // below sharpness x 2e-7.
         float value[kLobes];
         vec3 sum = vec3(0.0);
         [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
-            vec3 chord = d.xyz - axis[k];
-            exponent[k] = -0.5 * sharpness[k] * dot(chord, chord);
-            value[k] = exp(exponent[k]);
+            value[k] = exp2(steepness[k] * (dot(d.xyz, axis[k]) - 1.0));
             sum += amplitude[k] * value[k];
         }
 
@@ -113,23 +102,20 @@ void main()
         [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
             float b = dot(dSum, amplitude[k]) * value[k];
             towards[k] += d.xyz * b;
-            dSharpness[k] += b * exponent[k];
+            total[k] += b;
             dAmplitude[k] += dSum * value[k];
         }
     }
 
-    // Through the normalisation of the axis: only the part across it counts.
+    // d value / d ln(lambda) = value lambda (d . axis - 1). Through the normalisation of the axis only the part across
+    // it counts.
     [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
-        vec3 across = towards[k] - axis[k] * dot(axis[k], towards[k]);
-        vec3 dAxis = across * (sharpness[k] / axisLength[k]);
-        uint base = k * kSgFitComponents * push.cellCount + cell;
-        gradients[base] = dAxis.x;
-        gradients[base + push.cellCount] = dAxis.y;
-        gradients[base + 2u * push.cellCount] = dAxis.z;
-        gradients[base + 3u * push.cellCount] = dSharpness[k];
-        gradients[base + 4u * push.cellCount] = dAmplitude[k].x;
-        gradients[base + 5u * push.cellCount] = dAmplitude[k].y;
-        gradients[base + 6u * push.cellCount] = dAmplitude[k].z;
+        float along = dot(axis[k], towards[k]);
+        vec3 dAxis = (towards[k] - axis[k] * along) * (sharpness[k] / axisLength[k]);
+        float dSharpness = sharpness[k] * (along - total[k]);
+        uint index = k * 2u * push.cellCount + cell;
+        gradients[index] = vec4(dAxis, dSharpness);
+        gradients[index + push.cellCount] = vec4(dAmplitude[k], 0.0);
     }
     losses[cell] = loss;
 }

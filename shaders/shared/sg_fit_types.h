@@ -14,14 +14,23 @@
 
 STRANDLIGHT_SHARED_BEGIN
 
-// Parameters of a lobe, planar: [lobe * 7 + component, texel].
+// A lobe is two vec4, so that a lane fetches it with two loads: (axis, ln lambda) and (amplitude, 0).
+// Blocks are [lobe * 2 + half, item] vec4, item = texel or cell; component c of a lobe is component c % 4 of half c / 4.
 STRANDLIGHT_CONST(uint) kSgFitAxis = 0u;      // 3: unit axis in the texel's frame
 STRANDLIGHT_CONST(uint) kSgFitSharpness = 3u; // 1: ln(lambda)
 STRANDLIGHT_CONST(uint) kSgFitAmplitude = 4u; // 3: radiance
 STRANDLIGHT_CONST(uint) kSgFitComponents = 7u;
+STRANDLIGHT_CONST(uint) kSgFitLobeFloats = 8u; // with the padding
 // Adam keeps one second moment per group (axis, sharpness, amplitude), so that a step neither turns with the
-// coordinate axes nor changes hue: [lobe * 3 + group, texel].
+// coordinate axes nor changes hue: [lobe, texel] vec4 (axis, sharpness, amplitude, 0).
 STRANDLIGHT_CONST(uint) kSgFitGroups = 3u;
+STRANDLIGHT_CONST(uint) kSgFitMomentFloats = 4u;
+
+// Index of a float in a block of lobes.
+STRANDLIGHT_FN uint sgFitIndex(uint lobe, uint component, uint item, uint itemCount)
+{
+    return ((lobe * 2u + component / 4u) * itemCount + item) * 4u + component % 4u;
+}
 
 STRANDLIGHT_CONST(uint) kSgFitNone = 0xffffffffu;
 
