@@ -15,13 +15,13 @@ namespace strandlight {
 
 struct BakeSettings
 {
-    std::uint32_t atlasResolution = 128;    // texels per side
-    std::uint32_t lightfieldSize = 16;      // directions per side of the hemi-octahedral image
+    std::uint32_t atlasResolution = 128; // texels per side
+    std::uint32_t lightfieldSize = 16;   // directions per side of the hemi-octahedral image
     std::uint32_t lobes = 8;
-    std::uint32_t environmentLobes = 8;     // for the second set, when the scene has an environment
+    std::uint32_t environmentLobes = 8; // for the second set, when the scene has an environment
     std::uint32_t samplesPerDirection = 4;
     std::uint32_t bounces = 6;
-    std::uint32_t steps = 600;              // of the fit
+    std::uint32_t steps = 600; // of the fit
     std::uint32_t seed = 1;
     FitMode fit = FitMode::Direct;
     // Where work in progress is kept, and continued from when `resume` is set. Empty: nowhere.
@@ -32,19 +32,20 @@ struct BakeSettings
 
 struct BakeStatistics
 {
-    std::uint32_t texels = 0;          // covered
-    std::uint32_t skippedTexels = 0;   // inside geometry
-    std::uint32_t emptyTexels = 0;     // of the atlas, without surface: not captured
+    std::uint32_t texels = 0;        // covered
+    std::uint32_t skippedTexels = 0; // inside geometry
+    std::uint32_t emptyTexels = 0;   // of the atlas, without surface: not captured
     double atlasSeconds = 0.0;
     double captureSeconds = 0.0;
     double fitSeconds = 0.0;
-    double radianceRmse = 0.0;         // light field against its lobes, at texels
+    double radianceRmse = 0.0; // light field against its lobes, at texels
     double environmentRmse = 0.0;
-    std::uint64_t bytesPerTexel = 0;   // of both sets as stored in fp16
+    std::uint64_t bytesPerTexel = 0; // of both sets as stored in fp16
     std::uint64_t peakDeviceBytes = 0;
 };
 
-// Throws Error on a scene that cannot be baked, Interrupted when the user stops it (the checkpoint is then on disk).
+// Throws Error on a scene that cannot be baked, Interrupted when the user stops it (the checkpoint
+// is then on disk).
 SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& settings,
                  BakeStatistics* statistics = nullptr);
 
