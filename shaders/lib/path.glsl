@@ -11,24 +11,27 @@
 #ifndef STRANDLIGHT_LIB_PATH_GLSL
 #define STRANDLIGHT_LIB_PATH_GLSL
 
+#extension GL_EXT_control_flow_attributes : require
+
 #include "shared/brdf.h"
 #include "shared/environment.h"
 #include "shared/light_types.h"
 #include "shared/octahedral.h"
 #include "shared/rng.h"
 #include "lib/trace.glsl"
-#include "lib/textures.glsl"
+#include "lib/path_material.glsl"
 
 const bool kHasEmitters = (kFeatures & kFeatureEmitters) != 0u;
 const bool kHasPunctual = (kFeatures & kFeaturePunctual) != 0u;
 const bool kHasEnvironment = (kFeatures & kFeatureEnvironment) != 0u;
 const bool kHasAlphaMask = (kFeatures & kFeatureAlphaMask) != 0u;
 const bool kHasBaseColorTexture = (kFeatures & kFeatureBaseColorTexture) != 0u;
-const bool kHasMetallicRoughnessTexture = (kFeatures & kFeatureMetallicRoughnessTexture) != 0u;
 const bool kHasNormalTexture = (kFeatures & kFeatureNormalTexture) != 0u;
 const bool kHasEmissiveTexture = (kFeatures & kFeatureEmissiveTexture) != 0u;
 const bool kHasTexCoord1 = (kFeatures & kFeatureTexCoord1) != 0u;
 const bool kHasLayer = (kFeatures & kFeatureLayer) != 0u;
+// The textures of the scene as kMaterial... bits: features and bits are in the same order.
+const uint kTextureBits = (kFeatures / kFeatureBaseColorTexture) & kMaterialAnyTexture;
 const bool kHasTexCoords = (kFeatures & (kFeatureBaseColorTexture | kFeatureMetallicRoughnessTexture |
                                          kFeatureNormalTexture | kFeatureEmissiveTexture)) != 0u;
 
@@ -66,12 +69,6 @@ struct Path
     uint lost;       // rays or paths given up; survives the path
 };
 
-struct TexCoords
-{
-    vec2 uv0;
-    vec2 uv1;
-};
-
 vec2 uintPairToVec2(uint a, uint b)
 {
     return vec2(uintBitsToFloat(a), uintBitsToFloat(b));
@@ -101,6 +98,11 @@ TexCoords fetchTexCoords(uint slot, float u, float v, uint triangleCount)
     return t;
 }
 
+uint texturesOf(uint material)
+{
+    return uint(STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).w) & kTextureBits;
+}
+
 // The nearest surface, or with anyHit any, that its mask does not cut away.
 Hit traceSurface(PathContext context, vec3 origin, vec3 direction, float tMax, bool anyHit)
 {
@@ -118,7 +120,10 @@ Hit traceSurface(PathContext context, vec3 origin, vec3 direction, float tMax, b
         uint material = fetchTriangle(hit.slot * 3u + 1u).w;
         float cutoff = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).z;
         TexCoords t = fetchTexCoords(hit.slot, hit.u, hit.v, context.triangleCount);
-        if (cutoff < 0.0 || evaluateAlpha(material, t.uv0, t.uv1) >= cutoff)
+        float alpha = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels).w;
+        if (kHasBaseColorTexture)
+            alpha *= sampleTextures(material, texturesOf(material) & kMaterialBaseColorTexture, t).baseColor.w;
+        if (cutoff < 0.0 || alpha >= cutoff)
             break;
         hit.lost = true; // unless the next layer is solid
         tMin = hit.t;
@@ -174,13 +179,9 @@ struct LightSample
 
 vec3 emissionOf(uint material, TexCoords t)
 {
-    uint first = material * kMaterialTexels;
-    vec3 emission = STRANDLIGHT_MATERIAL_TEXEL(first + 1u).xyz;
-    if (kHasEmissiveTexture) {
-        uint flags = uint(STRANDLIGHT_MATERIAL_TEXEL(first + 3u).w);
-        if ((flags & kMaterialEmissiveTexture) != 0u)
-            emission *= sampleSlot(first + 10u, t.uv0, t.uv1, kFullResolution).xyz;
-    }
+    vec3 emission = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 1u).xyz;
+    if (kHasEmissiveTexture)
+        emission *= sampleTextures(material, texturesOf(material) & kMaterialEmissiveTexture, t).emissive.xyz;
     return emission;
 }
 
@@ -248,30 +249,19 @@ LightSample sampleEnvironment(uvec4 header, ivec2 size, vec3 uniforms, float pro
 
 // --- Surfaces ------------------------------------------------------------------------------------------------------
 
-// Material constants times the textures that this scene's kernels know about.
-Surface surfaceOf(uint material, TexCoords t, STRANDLIGHT_OUT(vec3) normal)
+// Material constants times the textures that this scene's kernels know about. `normal` is in tangent space.
+Surface surfaceOf(uint material, TextureValues textures, STRANDLIGHT_OUT(vec3) normal)
 {
     uint first = material * kMaterialTexels;
-    vec4 color = STRANDLIGHT_MATERIAL_TEXEL(first);
-    float metallic = STRANDLIGHT_MATERIAL_TEXEL(first + 1u).w;
+    vec3 color = STRANDLIGHT_MATERIAL_TEXEL(first).xyz * textures.baseColor.xyz;
+    float metallic = STRANDLIGHT_MATERIAL_TEXEL(first + 1u).w * textures.metallicRoughness.z;
     vec4 specular = STRANDLIGHT_MATERIAL_TEXEL(first + 2u);
     vec4 rest = STRANDLIGHT_MATERIAL_TEXEL(first + 3u);
-    uint flags = uint(rest.w);
-    normal = vec3(0.0, 0.0, 1.0);
-    if (kHasBaseColorTexture && (flags & kMaterialBaseColorTexture) != 0u)
-        color *= sampleSlot(first + 4u, t.uv0, t.uv1, kFullResolution);
-    if (kHasMetallicRoughnessTexture && (flags & kMaterialMetallicRoughnessTexture) != 0u) {
-        vec4 mr = sampleSlot(first + 6u, t.uv0, t.uv1, kFullResolution);
-        rest.x *= mr.y;
-        metallic *= mr.z;
-    }
-    if (kHasNormalTexture && (flags & kMaterialNormalTexture) != 0u) {
-        vec3 n = 2.0 * sampleSlot(first + 8u, t.uv0, t.uv1, kFullResolution).xyz - 1.0;
-        n = vec3(n.xy * rest.y, n.z);
-        float squared = dot(n, n);
-        normal = squared > 1e-12 ? n * inversesqrt(squared) : normal;
-    }
-    Surface surface = makeSurface(color.xyz, metallic, rest.x, specular.w, specular.xyz);
+    vec3 n = 2.0 * textures.normal.xyz - 1.0;
+    n = vec3(n.xy * rest.y, n.z);
+    float squared = dot(n, n);
+    normal = squared > 1e-12 ? n * inversesqrt(squared) : vec3(0.0, 0.0, 1.0);
+    Surface surface = makeSurface(color, metallic, rest.x * textures.metallicRoughness.y, specular.w, specular.xyz);
     if (!kHasLayer) {
         surface.f0 = vec3(0.0);
         surface.f90 = 0.0;
@@ -342,6 +332,7 @@ void advancePath(inout Path path, PathContext context)
     geometric = front ? geometric : -geometric;
     uint material = c1.w;
     TexCoords t = fetchTexCoords(hit.slot, hit.u, hit.v, context.triangleCount);
+    TextureValues textures = sampleTextures(material, texturesOf(material), t);
     bool doubleSided = (uint(STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).w) & kMaterialDoubleSided) != 0u;
     path.primary = path.primary != 0u ? path.primary : (front ? 1u : (doubleSided ? 3u : 2u));
 
@@ -350,7 +341,8 @@ void advancePath(inout Path path, PathContext context)
         float lightPdf = (1.0 - uintBitsToFloat(header.y)) * uintBitsToFloat(c2.w) * hit.t * hit.t /
                          max(abs(facing), 1e-9);
         float weight = path.bounce == 0u ? 1.0 : powerHeuristic(path.pdf, lightPdf);
-        path.radiance += path.throughput * emissionOf(material, t) * weight;
+        vec3 emission = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 1u).xyz * textures.emissive.xyz;
+        path.radiance += path.throughput * emission * weight;
     }
     if (path.bounce >= context.bounces) {
         path.alive = false;
@@ -364,7 +356,7 @@ void advancePath(inout Path path, PathContext context)
     vec3 normal = unpackDirection(a0.x) * (1.0 - hit.u - hit.v) + unpackDirection(a1.x) * hit.u +
                   unpackDirection(a2.x) * hit.v;
     vec3 mapped;
-    Surface surface = surfaceOf(material, t, mapped);
+    Surface surface = surfaceOf(material, textures, mapped);
     if (kHasNormalTexture) {
         vec3 n = normal * inversesqrt(max(dot(normal, normal), 1e-20));
         vec3 tangent = unpackDirection(a0.w & ~1u) * (1.0 - hit.u - hit.v) + unpackDirection(a1.w & ~1u) * hit.u +
