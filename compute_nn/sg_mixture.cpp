@@ -36,7 +36,8 @@ void checkTensor(const char* what, const TensorId& tensor, std::uint64_t element
 std::uint32_t imagesPerDispatch(const SgMixtureDesc& desc)
 {
     const std::uint64_t perImage = std::uint64_t(desc.lobes) * desc.directions;
-    return std::uint32_t(std::clamp<std::uint64_t>(kDispatchWork / perImage, 1, desc.images));
+    // Images are a dimension of the dispatch, which a device may limit to 65,535 groups.
+    return std::uint32_t(std::clamp<std::uint64_t>(kDispatchWork / perImage, 1, 32768));
 }
 
 } // namespace
