@@ -5,20 +5,17 @@
 #include <string>
 
 #include "engine/base/assert.hpp"
-#include "engine/base/byte_stream.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/file.hpp"
 #include "engine/base/log.hpp"
 #include "engine/base/progress.hpp"
 #include "kernels.gen.hpp"
-#include "passes/slice_planner.hpp"
+#include "passes/lightfield_capture_state.hpp"
 #include "shaders/shared/rgb9e5.h"
 
 namespace strandlight {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x50434c53u; // "SLCP"
-constexpr std::uint32_t kVersion = 1;
 // A slice's accumulator: large enough to fill a device, small enough to lose little when
 // interrupted.
 constexpr std::uint32_t kSliceCells = 1u << 16u;
@@ -44,77 +41,6 @@ bool liesInside(const std::uint32_t* kinds, bool black)
 
 } // namespace
 
-gpu::CapturePoint capturePoint(const Scene& scene, const Atlas& atlas, const AtlasTexel& texel)
-{
-    const glm::uvec3 t = scene.triangles[texel.triangle];
-    const Vertex* v[3] = {&scene.vertices[t.x], &scene.vertices[t.y], &scene.vertices[t.z]};
-    // A texel on the border of its triangle may lie exactly on the next wall: half its rays would
-    // start behind it.
-    const glm::vec2 inner = glm::mix(texel.barycentric, glm::vec2(1.0f / 3.0f), 0.002f);
-    const float w[3] = {1.0f - inner.x - inner.y, inner.x, inner.y};
-    gpu::CapturePoint point{};
-    glm::vec3 tangent(0.0f);
-    for (int k = 0; k < 3; ++k) {
-        point.position += w[k] * v[k]->position;
-        point.normal += w[k] * v[k]->normal;
-        tangent += w[k] * atlas.corners[std::size_t(texel.triangle) * 3 + std::size_t(k)].tangent;
-    }
-    const glm::vec3 e1 = v[1]->position - v[0]->position;
-    const glm::vec3 e2 = v[2]->position - v[0]->position;
-    const glm::vec3 cross = glm::cross(e1, e2);
-    point.geometric = glm::dot(cross, cross) > 0.0f ? glm::normalize(cross) : v[0]->normal;
-    if (!(glm::dot(point.normal, point.normal) > 1e-12f))
-        point.normal = point.geometric;
-    point.normal = glm::normalize(point.normal);
-    if (glm::dot(point.geometric, point.normal) < 0.0f)
-        point.geometric = -point.geometric;
-    tangent -= point.normal * glm::dot(point.normal, tangent);
-    glm::vec3 bitangent;
-    if (glm::dot(tangent, tangent) > 1e-12f)
-        point.tangent = glm::normalize(tangent);
-    else
-        gpu::buildBasis(point.normal, point.tangent, bitangent);
-    return point;
-}
-
-std::vector<gpu::CapturePoint> capturePoints(const Scene& scene, const Atlas& atlas)
-{
-    std::vector<gpu::CapturePoint> points;
-    points.reserve(atlas.texels.size());
-    for (const AtlasTexel& texel : atlas.texels)
-        points.push_back(capturePoint(scene, atlas, texel));
-    return points;
-}
-
-struct LightfieldCapture::State
-{
-    State(Context& c, GpuScene& s, const CaptureSettings& set)
-        : context(c), scene(s), settings(set), planner(set.cellsPerDispatch)
-    {
-    }
-
-    void captureSlice(std::uint32_t first, std::uint32_t count);
-    void traceRange(std::uint32_t firstTexel, std::uint32_t firstCell, std::uint32_t count);
-    void packSlice(LightfieldPart& part, std::uint32_t first, std::uint32_t count);
-    void markInvalid(const LightfieldPart& part, std::uint32_t first, std::uint32_t count);
-    LightfieldPart& partOf(std::uint32_t texel);
-    std::uint32_t identity() const;
-
-    Context& context;
-    GpuScene& scene;
-    CaptureSettings settings;
-    SlicePlanner planner;
-    TraceStatistics statistics;
-    std::uint32_t pointsCrc = 0;
-    Buffer points;      // CapturePoint [texelCount]
-    Buffer accumulator; // vec4 [kSliceCells or one texel, 2]
-    Buffer counters;    // uint [kTraceCounters]
-    Buffer primaries;   // uint [texels of a slice, kPrimaryKinds]
-    Lightfield field;
-    std::uint32_t completed = 0;
-    std::uint32_t sliceTexels = 1;
-};
-
 LightfieldPart& LightfieldCapture::State::partOf(std::uint32_t texel)
 {
     const auto part = std::find_if(field.parts.begin(), field.parts.end(), [&](const auto& p) {
@@ -122,20 +48,6 @@ LightfieldPart& LightfieldCapture::State::partOf(std::uint32_t texel)
     });
     STRANDLIGHT_ASSERT(part != field.parts.end());
     return *part;
-}
-
-// What saved bytes must have been made with.
-std::uint32_t LightfieldCapture::State::identity() const
-{
-    ByteWriter writer;
-    writer.value(pointsCrc);
-    writer.value(settings.size);
-    writer.value(settings.samplesPerDirection);
-    writer.value(settings.bounces);
-    writer.value(settings.seed);
-    writer.value(scene.features);
-    writer.value(scene.triangleCount);
-    return crc32(writer.bytes());
 }
 
 LightfieldCapture::LightfieldCapture(Context& context, GpuScene& scene,
@@ -323,75 +235,6 @@ void LightfieldCapture::State::markInvalid(const LightfieldPart& part, std::uint
         }
         field.valid[first + i] = liesInside(own, black) ? 0 : 1;
     }
-}
-
-std::vector<std::uint8_t> LightfieldCapture::save() const
-{
-    const State& s = *state_;
-    ByteWriter writer;
-    writer.value(kMagic);
-    writer.value(kVersion);
-    writer.value(s.identity());
-    writer.value(s.completed);
-    writer.value(s.field.clampedCells);
-    writer.value(s.statistics);
-    writer.array(
-        std::vector<std::uint8_t>(s.field.valid.begin(), s.field.valid.begin() + s.completed));
-    for (const LightfieldPart& part : s.field.parts) {
-        if (part.firstTexel >= s.completed)
-            break;
-        const std::size_t words =
-            std::size_t(std::min(part.texelCount, s.completed - part.firstTexel)) *
-            s.field.directionCount();
-        const auto finished = [&](const Buffer& buffer) {
-            auto all = buffer.downloadAs<std::uint32_t>();
-            all.resize(words);
-            return all;
-        };
-        writer.array(finished(part.radiance));
-        if (s.field.hasEnvironment)
-            writer.array(finished(part.environment));
-    }
-    return writer.bytes();
-}
-
-void LightfieldCapture::restore(std::span<const std::uint8_t> bytes)
-{
-    State& s = *state_;
-    ByteReader reader(bytes, "capture checkpoint");
-    if (reader.value<std::uint32_t>() != kMagic || reader.value<std::uint32_t>() != kVersion)
-        reader.fail("not a capture of this version");
-    if (reader.value<std::uint32_t>() != s.identity())
-        reader.fail("made with another scene, atlas or other settings");
-    const auto completed = reader.value<std::uint32_t>();
-    if (completed > s.field.texelCount)
-        reader.fail(std::to_string(completed) + " of " + std::to_string(s.field.texelCount) +
-                    " texels are said to be finished");
-    const auto clamped = reader.value<std::uint64_t>();
-    const auto statistics = reader.value<TraceStatistics>();
-    const auto valid = reader.array<std::uint8_t>();
-    if (valid.size() != completed)
-        reader.fail("the list of valid texels does not fit");
-    for (LightfieldPart& part : s.field.parts) {
-        if (part.firstTexel >= completed)
-            break;
-        const std::size_t words =
-            std::size_t(std::min(part.texelCount, completed - part.firstTexel)) *
-            s.field.directionCount();
-        const auto load = [&](Buffer& buffer) {
-            const auto image = reader.array<std::uint32_t>();
-            if (image.size() != words)
-                reader.fail("the images do not fit");
-            buffer.upload(std::as_bytes(std::span(image)));
-        };
-        load(part.radiance);
-        if (s.field.hasEnvironment)
-            load(part.environment);
-    }
-    std::copy(valid.begin(), valid.end(), s.field.valid.begin());
-    s.field.clampedCells = clamped;
-    s.statistics = statistics;
-    s.completed = completed;
 }
 
 Lightfield LightfieldCapture::finish()

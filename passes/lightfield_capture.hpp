@@ -9,9 +9,9 @@
 #include "engine/scene/atlas.hpp"
 #include "engine/scene/gpu_scene.hpp"
 #include "engine/scene/scene.hpp"
+#include "passes/capture_points.hpp"
 #include "passes/lightfield.hpp"
 #include "passes/path_trace.hpp"
-#include "shaders/shared/path_types.h"
 
 namespace strandlight {
 
@@ -23,10 +23,6 @@ struct CaptureSettings
     std::uint32_t seed = 1;
     std::uint32_t cellsPerDispatch = 0; // 0: chosen from measured time; results do not depend on it
 };
-
-// Position and frame of a texel. Images live in (tangent, cross(normal, tangent), normal).
-gpu::CapturePoint capturePoint(const Scene& scene, const Atlas& atlas, const AtlasTexel& texel);
-std::vector<gpu::CapturePoint> capturePoints(const Scene& scene, const Atlas& atlas);
 
 class LightfieldCapture
 {

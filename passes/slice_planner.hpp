@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 
 namespace strandlight {
@@ -21,6 +20,11 @@ public:
     // The last slice had `items` items and took this long. Whole groups of 32, at most doubled.
     void finished(std::uint32_t items, double milliseconds)
     {
+        // The first dispatch also compiles the kernel.
+        if (first_) {
+            first_ = false;
+            return;
+        }
         slowestMs_ = std::max(slowestMs_, milliseconds);
         if (fixed_ > 0 || items < items_)
             return;
@@ -36,6 +40,7 @@ private:
     std::uint32_t fixed_;
     std::uint32_t items_;
     double slowestMs_ = 0.0;
+    bool first_ = true;
 };
 
 } // namespace strandlight

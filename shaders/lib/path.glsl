@@ -39,8 +39,9 @@ const bool kHasTexCoords = (kFeatures & (kFeatureBaseColorTexture | kFeatureMeta
 const uint kMaskLayers = 16u;
 // From this bounce on, paths end by Russian roulette.
 const uint kRouletteBounce = 3u;
-// An invocation starts no path beyond the first mark and abandons one at the second (counted): lavapipe ends all loops
-// silently at 65535 trips.
+// An invocation starts no path beyond the first mark and abandons one at the second (counted): lavapipe silently ends all
+// loops at 65535 trips. The second mark and two rays at their own bound stay well below that.
+const uint kTripsPerSegment = kHasTexCoords ? 64u : 4u; // besides its rays
 const uint kTripsToStart = 12000u;
 const uint kTripsToAbandon = 32000u;
 
@@ -114,7 +115,7 @@ Hit traceSurface(PathContext context, vec3 origin, vec3 direction, float tMax, b
     Hit hit;
     for (uint layer = 0u; layer < kMaskLayers; ++layer) {
         hit = traverse(context.grid, origin, direction, tMin, tMax, false);
-        rounds += hit.rounds + 1u;
+        rounds += hit.rounds + 1u; // the mask's own lookup
         if (hit.slot == kNoHit)
             break;
         uint material = fetchTriangle(hit.slot * 3u + 1u).w;
@@ -287,7 +288,7 @@ void startPath(inout Path path, vec3 origin, vec3 direction)
 void countRounds(inout Path path, Hit hit)
 {
     // All lanes of a batch turn together, so the longest ray is what counts.
-    path.trips += kTripsPerRound * subgroupMax(hit.rounds) + 2u;
+    path.trips += kTripsPerRound * subgroupMax(hit.rounds);
     path.lost += hit.lost ? 1u : 0u;
 }
 
@@ -307,6 +308,7 @@ void addEnvironment(inout Path path, uvec4 header)
 void advancePath(inout Path path, PathContext context)
 {
     uvec4 header = STRANDLIGHT_LIGHT_TABLE(0u);
+    path.trips += kTripsPerSegment;
     Hit hit = traceSurface(context, path.origin, path.direction, 1e30, false);
     countRounds(path, hit);
     if (hit.slot == kNoHit) {
