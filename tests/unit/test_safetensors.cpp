@@ -105,7 +105,7 @@ TEST_CASE("safetensors: broken files are refused")
     CHECK_THROWS_AS((void)Safetensors::load(path), FileError);
 }
 
-TEST_CASE("safetensors: 2000 mutated files load or are refused, nothing else")
+TEST_CASE("safetensors: 1000 mutated files load or are refused, nothing else")
 {
     const std::string header =
         R"({"__metadata__":{"op":"x"},"a":{"dtype":"F32","shape":[2,2],"data_offsets":[0,16]},)"
@@ -113,14 +113,14 @@ TEST_CASE("safetensors: 2000 mutated files load or are refused, nothing else")
     const std::vector<std::uint8_t> good = readFile(write(header, 24));
     const auto path = scratch("strandlight_test_mutated.safetensors");
     std::uint32_t loaded = 0, refused = 0;
-    for (std::uint32_t i = 0; i < 2000; ++i) {
+    for (std::uint32_t i = 0; i < 1000; ++i) {
         std::vector<std::uint8_t> bytes = good;
         const glm::uvec3 h = gpu::hashPcg3(glm::uvec3(i, 1, 2));
         if (h.x % 4 == 0)
             bytes.resize(h.y % bytes.size());
         for (std::uint32_t k = 0; k <= h.x % 3 && !bytes.empty(); ++k)
             bytes[gpu::hashPcg(h.y + k) % bytes.size()] = std::uint8_t(gpu::hashPcg(h.z + k));
-        std::FILE* out = std::fopen(path.c_str(), "wb"); // not atomically: 2000 fsyncs take seconds
+        std::FILE* out = std::fopen(path.c_str(), "wb"); // not atomically: 1000 fsyncs take seconds
         REQUIRE(out);
         std::fwrite(bytes.data(), 1, bytes.size(), out);
         std::fclose(out);
@@ -132,8 +132,8 @@ TEST_CASE("safetensors: 2000 mutated files load or are refused, nothing else")
         }
     }
     std::filesystem::remove(path);
-    CHECK_EQ(loaded + refused, 2000);
-    CHECK_GT(refused, 500); // the mutations do reach the checks
+    CHECK_EQ(loaded + refused, 1000);
+    CHECK_GT(refused, 250); // the mutations do reach the checks
 }
 
 TEST_CASE("safetensors: the shared vectors load")
