@@ -15,6 +15,7 @@ namespace strandlight {
 namespace {
 
 constexpr int kLobes = 4;
+constexpr int kRows = 6;
 constexpr int kFirstIterations = 120; // the first cell has no neighbour to start from
 constexpr int kIterations = 14;
 
@@ -36,6 +37,8 @@ struct Component
     double weight = 0.0;
     double x = 0.0; // eta
     double z = 0.0;
+    double meanX = 0.0; // of its share of the slice, cosine included
+    double meanZ = 1.0;
 };
 
 using Mixture = std::array<Component, kLobes>;
@@ -161,8 +164,11 @@ void fitMixture(const Slice& slice, Mixture& mixture, int iterations)
         }
         for (int k = 0; k < kLobes; ++k) {
             mixture[k].weight = weight[k] / energy;
-            if (weight[k] > 1e-9 * energy)
-                stepTowardsMean(mixture[k], sumX[k] / weight[k], sumZ[k] / weight[k]);
+            if (!(weight[k] > 1e-9 * energy))
+                continue;
+            mixture[k].meanX = sumX[k] / weight[k];
+            mixture[k].meanZ = sumZ[k] / weight[k];
+            stepTowardsMean(mixture[k], mixture[k].meanX, mixture[k].meanZ);
         }
     }
 }
@@ -174,9 +180,33 @@ Mixture startMixture(double alpha, double cosView)
     Mixture mixture;
     for (int k = 0; k < kLobes; ++k) {
         const double sharpness = 1.0 / (alpha * alpha) * std::pow(6.0, -k);
-        mixture[k] = {1.0 / kLobes, sharpness * sine, sharpness * cosView};
+        mixture[k] = {1.0 / kLobes, sharpness * sine, sharpness * cosView, sine, cosView};
     }
     return mixture;
+}
+
+// Direction times ln(1 + sharpness): the form that interpolates (decodeSpecularLobe).
+glm::vec2 encodeLobe(double x, double z, double sharpness)
+{
+    const double scale = std::log1p(sharpness) / std::max(std::hypot(x, z), 1e-9);
+    return {float(x * scale), float(z * scale)};
+}
+
+void storeCell(SpecularTable& table, std::uint32_t a, std::uint32_t v, const Slice& slice,
+               const Mixture& mixture)
+{
+    for (int k = 0; k < kLobes; ++k) {
+        const Component& c = mixture[k];
+        const glm::vec2 lobe = encodeLobe(c.x, c.z, std::hypot(c.x, c.z));
+        const double extra = k == 0 ? slice.scale : (k == 1 ? slice.bias : 0.0);
+        table.rows[k].at(a, v) = glm::vec4(lobe, c.weight, extra);
+        const double length = std::min(std::hypot(c.meanX, c.meanZ), 1.0);
+        const glm::vec2 mean =
+            encodeLobe(c.meanX, c.meanZ, gpu::sgSharpnessFromMeanLength(float(length)));
+        glm::vec4& pair = table.rows[kLobes + k / 2].at(a, v);
+        pair[2 * (k % 2)] = mean.x;
+        pair[2 * (k % 2) + 1] = mean.y;
+    }
 }
 
 SpecularTable fitTable()
@@ -184,7 +214,7 @@ SpecularTable fitTable()
     constexpr std::uint32_t kAlphas = gpu::kSpecularTableAlphas;
     constexpr std::uint32_t kViews = gpu::kSpecularTableViews;
     SpecularTable table;
-    table.rows.assign(kLobes, CpuImage(kAlphas, kViews));
+    table.rows.assign(kRows, CpuImage(kAlphas, kViews));
     std::array<Mixture, kViews> column{}; // the last alpha's fits, by view
     double lastAlpha = 0.0;
     for (std::uint32_t a = 0; a < kAlphas; ++a) {
@@ -209,13 +239,7 @@ SpecularTable fitTable()
                 }
             }
             fitMixture(slice, mixture, iterations);
-            for (int k = 0; k < kLobes; ++k) {
-                const Component& c = mixture[k];
-                const double sharpness = std::hypot(c.x, c.z);
-                const double scale = std::log1p(sharpness) / std::max(sharpness, 1e-9);
-                const double extra = k == 0 ? slice.scale : (k == 1 ? slice.bias : 0.0);
-                table.rows[k].at(a, v) = glm::vec4(c.x * scale, c.z * scale, c.weight, extra);
-            }
+            storeCell(table, a, v, slice, mixture);
         }
         lastAlpha = alpha;
     }
@@ -252,10 +276,10 @@ const SpecularTable& specularTable()
 Image uploadSpecularTable(Context& context)
 {
     const SpecularTable& table = specularTable();
-    const ImageDesc desc{gpu::kSpecularTableAlphas, gpu::kSpecularTableViews, kLobes,
+    const ImageDesc desc{gpu::kSpecularTableAlphas, gpu::kSpecularTableViews, kRows,
                          Format::RGBA32F, 1};
     Image image(context, desc, "specular table");
-    for (std::uint32_t k = 0; k < kLobes; ++k)
+    for (std::uint32_t k = 0; k < kRows; ++k)
         image.upload(table.rows[k], k);
     return image;
 }

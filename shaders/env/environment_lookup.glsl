@@ -5,6 +5,7 @@
 #define STRANDLIGHT_ENV_ENVIRONMENT_LOOKUP_GLSL
 
 #include "shared/environment.h"
+#include "shared/sampling.h"
 #include "shared/shade_types.h"
 
 // The four texels around (u, v) of a lat-long picture: u wraps, v clamps at the poles.
@@ -35,7 +36,7 @@ void pyramidLevel(EnvironmentShape shape, uint level, out uint offset, out uint 
     }
 }
 
-vec3 pyramidRadiance(EnvironmentShape shape, vec3 direction, uint level)
+vec3 pyramidTexel(EnvironmentShape shape, vec3 direction, uint level)
 {
     uint offset;
     uint width;
@@ -49,6 +50,18 @@ vec3 pyramidRadiance(EnvironmentShape shape, vec3 direction, uint level)
     vec3 bottom = mix(imageLoad(ENVIRONMENT_PYRAMID, int(offset + texels.z)).rgb,
                       imageLoad(ENVIRONMENT_PYRAMID, int(offset + texels.w)).rgb, blend.x);
     return mix(top, bottom, blend.y);
+}
+
+// Trilinear; `level` may lie between levels and beyond them.
+vec3 pyramidRadiance(EnvironmentShape shape, vec3 direction, float level)
+{
+    float clamped = clamp(level, 0.0, float(shape.levels - 1u));
+    uint low = uint(clamped);
+    vec3 radiance = pyramidTexel(shape, direction, low);
+    if (clamped > float(low)) {
+        radiance = mix(radiance, pyramidTexel(shape, direction, low + 1u), clamped - float(low));
+    }
+    return radiance;
 }
 
 #ifdef ENVIRONMENT_PREFILTERED
@@ -65,16 +78,23 @@ vec3 prefilteredLevel(vec3 direction, uint level)
     return mix(top, bottom, blend.y);
 }
 
-// Mean radiance over the GGX lobe about `direction` at normal incidence.
-vec3 prefilteredRadiance(EnvironmentShape shape, vec3 direction, float alpha)
+// Mean radiance over a normalised SG.
+vec3 prefilteredRadiance(EnvironmentShape shape, vec3 direction, float sharpness)
 {
-    float level = sqrt(clamp(alpha, 0.0, 1.0)) * float(kPrefilterLevels) - 1.0;
-    uint low = uint(max(level, 0.0));
-    if (level < 0.0) {
-        return mix(pyramidRadiance(shape, direction, 0u), prefilteredLevel(direction, 0u), level + 1.0);
+    float level = log(1.0 + sharpness) / kPrefilterStep;
+    float last = float(kPrefilterLevels - 1u);
+    vec3 wide = vec3(0.0);
+    if (level < last) {
+        uint low = uint(level);
+        wide = mix(prefilteredLevel(direction, low), prefilteredLevel(direction, low + 1u), level - float(low));
+        if (level <= last - 1.0) {
+            return wide;
+        }
     }
-    uint high = min(low + 1u, kPrefilterLevels - 1u);
-    return mix(prefilteredLevel(direction, low), prefilteredLevel(direction, high), fract(level));
+    // Bilinear look-up of box-filtered texels of width h has the variance h^2 / 4; an SG has 1 / sharpness.
+    float texel = 2.0 * kPi / float(shape.width);
+    vec3 narrow = pyramidRadiance(shape, direction, log2(2.0 * inversesqrt(sharpness) / texel));
+    return level >= last ? narrow : mix(wide, narrow, level - (last - 1.0));
 }
 #endif
 

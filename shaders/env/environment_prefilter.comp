@@ -1,5 +1,7 @@
-// GGX-prefiltered environment: each texel of each level is the mean radiance over a GGX lobe about its direction.
-// Karis. Real Shading in Unreal Engine 4. 2013 (normal incidence, cosine weight)
+// Prefiltered environment: each texel of each level is the mean radiance over a normalised SG about its direction.
+// GGX lobes are sums of four such (shared/sg_specular.h), so reflections keep their shape at grazing views, which the
+// usual single lobe of normal incidence does not (Karis. Real Shading in Unreal Engine 4. 2013).
+// Jakob. Numerically Stable Sampling of the von Mises-Fisher Distribution on S^2. 2012
 // Krivanek, Colbert. Real-Time Shading with Filtered Importance Sampling. 2008 (pyramid level by sample density)
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -28,8 +30,7 @@ void main()
     }
     uint level = item / texelsPerLevel;
     uint texel = item % texelsPerLevel;
-    float roughness = float(level + 1u) / float(kPrefilterLevels);
-    float alpha2 = roughness * roughness * roughness * roughness;
+    float sharpness = exp(kPrefilterStep * float(level)) - 1.0;
     vec3 axis = environmentDirection((float(texel % kPrefilterWidth) + 0.5) / float(kPrefilterWidth),
                                      (float(texel / kPrefilterWidth) + 0.5) / float(kPrefilterHeight));
     vec3 x = normalize(cross(abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), axis));
@@ -37,33 +38,20 @@ void main()
 
     float texelSolidAngle = 2.0 * kPi * kPi / (float(push.environment.width) * float(push.environment.height));
     vec3 sum = vec3(0.0);
-    float weight = 0.0;
     for (uint i = 0u; i < kPrefilterSamples; ++i) {
-        // Half vector from the distribution, on a Hammersley set: the same for every texel, so levels are smooth.
+        // A Hammersley set, the same for every texel, so levels are smooth.
         float u = (float(i) + 0.5) / float(kPrefilterSamples);
         float phi = 2.0 * kPi * radicalInverse(i);
-        float cosHalf2 = (1.0 - u) / (1.0 + (alpha2 - 1.0) * u);
-        float cosHalf = sqrt(cosHalf2);
-        float sinHalf = sqrt(max(1.0 - cosHalf2, 0.0));
-        float cosLight = 2.0 * cosHalf2 - 1.0;
-        if (cosLight <= 0.0) {
-            continue;
-        }
-        float sinLight = 2.0 * cosHalf * sinHalf;
-        vec3 light = x * (cos(phi) * sinLight) + y * (sin(phi) * sinLight) + axis * cosLight;
-
-        float d = cosHalf2 * (alpha2 - 1.0) + 1.0;
-        float density = alpha2 / (kPi * d * d) * 0.25; // D (n.h) / (4 v.h) with v = n
-        float sampleSolidAngle = 1.0 / (float(kPrefilterSamples) * density);
+        // 1 - cos of the angle; the fraction u of the lobe lies outside.
+        float height = sharpness < 1e-3 ? 2.0 * (1.0 - u)
+                                        : -log(u + (1.0 - u) * exp(-2.0 * sharpness)) / sharpness;
+        float cosine = clamp(1.0 - height, -1.0, 1.0);
+        float sine = sqrt(max(height * (2.0 - height), 0.0));
+        vec3 light = x * (cos(phi) * sine) + y * (sin(phi) * sine) + axis * cosine;
+        float density = exp(-sharpness * height) / sgIntegral(sharpness);
         // One level coarser than the sample's own cell: neighbouring samples overlap.
-        float lod = max(0.5 * log2(sampleSolidAngle / texelSolidAngle) + 1.0, 0.0);
-        lod = min(lod, float(push.environment.levels - 1u));
-        uint low = uint(lod);
-        uint high = min(low + 1u, push.environment.levels - 1u);
-        vec3 radiance = mix(pyramidRadiance(push.environment, light, low),
-                            pyramidRadiance(push.environment, light, high), fract(lod));
-        sum += radiance * cosLight;
-        weight += cosLight;
+        float sampleSolidAngle = 1.0 / (float(kPrefilterSamples) * density);
+        sum += pyramidRadiance(push.environment, light, 0.5 * log2(sampleSolidAngle / texelSolidAngle) + 1.0);
     }
-    imageStore(prefiltered, int(item), vec4(sum / weight, 1.0));
+    imageStore(prefiltered, int(item), vec4(sum / float(kPrefilterSamples), 1.0));
 }

@@ -1,11 +1,12 @@
 // Glossy reflection of the distant environment: prefiltered radiance times a visibility ratio from the second SG set.
 // Heitz, Hill, McGuire. Combining Analytic Direct Illumination and Stochastic Shadows. 2018 (the ratio)
-// Lagarde, de Rousiers. Moving Frostbite to Physically Based Rendering. 2014 (dominant direction)
 //
 // The lobes hold environment times visibility at the resolution of the light field, so the ratio's numerator is their
-// reflection and its denominator the unoccluded environment reflected at the same blur: the prefiltered level whose
-// lobe is the BRDF's widened by the light lobes'. What remains of the ratio is visibility; the sharp prefiltered level
-// brings back the detail that the lobes cannot hold. On rough surfaces both levels agree and the lobes alone decide.
+// reflection and its denominator the unoccluded environment reflected at the same blur: each of the BRDF's lobes
+// widened by the light lobes'. What remains of the ratio is visibility; the unwidened look-up brings back the detail
+// that the lobes cannot hold. On rough surfaces both look-ups agree and the lobes alone decide.
+// Where the environment is dim, the lobes of a fit say little: the ratio then tends to the visibility of diffuse light
+// (as a Wiener filter does, with a noise of kFitNoise of the mean radiance).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -37,6 +38,8 @@ layout(push_constant, scalar) uniform Push { SgEnvironmentPush push; };
 #include "sg/lobe_fetch.glsl"
 #include "sg/specular_models.glsl"
 
+const float kFitNoise = 0.25;
+
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -62,33 +65,45 @@ void main()
     SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution, push.lobeCount);
     SgMixture mixture = specularMixtureAt(alpha, normal, view);
     vec3 reflected = vec3(0.0);
+    vec3 irradiance = vec3(0.0);
     float inverseSharpness = 0.0;
-    float total = 0.0;
+    float total = 1e-20;
     for (uint i = 0u; i < push.lobeCount; ++i) {
         SgSample lobe = sgFetch(footprint, i);
         vec2 response = specularResponse(kModel, mixture, alpha, normal, view, lobe.axis, lobe.lambda);
         reflected += lobe.amplitude * (specular.rgb * response.x + f90 * response.y);
+        irradiance += lobe.amplitude * sgIrradiance(lobe.lambda, clamp(dot(lobe.axis, normal), -1.0, 1.0));
         float weight = max(dot(lobe.amplitude, vec3(1.0)), 0.0) * (response.x + response.y);
         inverseSharpness += weight / max(lobe.lambda, 1e-3);
         total += weight;
     }
-    if (sgFootprintEmpty(footprint) || total <= 0.0) {
+    if (sgFootprintEmpty(footprint)) {
         return;
     }
-    reflected = max(reflected, vec3(0.0));
+    float widening = inverseSharpness / total;
 
-    // GGX of roughness alpha is about an SG of sharpness 1 / (2 alpha^2); blurs add in 1 / sharpness.
-    float widened = min(sqrt(alpha * alpha + 0.5 * inverseSharpness / total), 1.0);
-    float roughness = sqrt(alpha);
-    vec3 mirror = normalAlpha.xyz * (2.0 * dot(normalAlpha.xyz, viewWorld)) - viewWorld;
-    float lean = (1.0 - roughness) * (sqrt(1.0 - roughness) + roughness);
-    vec3 direction = safeNormalize(mix(normalAlpha.xyz, mirror, lean), normalAlpha.xyz);
-    vec3 albedo = specular.rgb * mixture.scale + f90 * mixture.bias;
-    vec3 sharp = albedo * prefilteredRadiance(push.environment, direction, alpha);
-    vec3 blurred = albedo * prefilteredRadiance(push.environment, direction, widened);
+    // The unoccluded environment over the BRDF's lobes, as they are and widened.
+    vec3 normalWorld = normalAlpha.xyz;
+    SgMeanLobes lobesWorld = specularMeanLobesAt(alpha, normalWorld, viewWorld);
+    float wideMean = mixture.bias / max(mixture.scale + mixture.bias, 1e-20);
+    vec3 sharp = vec3(0.0);
+    vec3 blurred = vec3(0.0);
+    for (int k = 0; k < 4; ++k) {
+        vec3 axis = lobesWorld.axis[k];
+        float sharpness = lobesWorld.sharpness[k];
+        float schlick = lobeSchlickWeight(wideMean, viewWorld, normalWorld, axis, sharpness);
+        vec3 color = mix(specular.rgb, vec3(f90), schlick) * (lobesWorld.weight[k] * (mixture.scale + mixture.bias));
+        sharp += color * prefilteredRadiance(push.environment, axis, sharpness);
+        float widened = 1.0 / (1.0 / max(sharpness, 1e-3) + widening);
+        blurred += color * prefilteredRadiance(push.environment, axis, widened);
+    }
 
-    // Visibility is at most 1. A dark denominator (looking away from all light) leaves the lobes as they are.
-    vec3 ratio = min(reflected / max(blurred, vec3(1e-6)), vec3(1.0));
-    vec3 radiance = sharp * ratio;
+    // Visibility of diffuse light: the cosine is nearly an SG of sharpness 2.133 (sgIrradianceWang).
+    vec3 mean = prefilteredRadiance(push.environment, normalWorld, 2.133);
+    vec3 diffuseVisibility = clamp(irradiance / max(kPi * mean, vec3(1e-6)), 0.0, 1.0);
+    vec3 noise = kFitNoise * mean * (specular.rgb * mixture.scale + f90 * mixture.bias);
+    vec3 noise2 = noise * noise + 1e-12;
+    vec3 ratio = (max(reflected, vec3(0.0)) * blurred + noise2 * diffuseVisibility) / (blurred * blurred + noise2);
+    vec3 radiance = sharp * min(ratio, vec3(1.0));
     imageStore(lit, pixel, vec4(imageLoad(lit, pixel).rgb + radiance, 1.0));
 }

@@ -14,6 +14,17 @@ SgMixture specularMixtureAt(float alpha, vec3 normal, vec3 view)
                            textureLod(SG_SPECULAR_TABLE, vec3(uv, 3.0), 0.0), normal, view);
 }
 
+SgMeanLobes specularMeanLobesAt(float alpha, vec3 normal, vec3 view)
+{
+    vec2 uv = specularTableUv(alpha, dot(normal, view));
+    vec4 weights = vec4(textureLod(SG_SPECULAR_TABLE, vec3(uv, 0.0), 0.0).z,
+                        textureLod(SG_SPECULAR_TABLE, vec3(uv, 1.0), 0.0).z,
+                        textureLod(SG_SPECULAR_TABLE, vec3(uv, 2.0), 0.0).z,
+                        textureLod(SG_SPECULAR_TABLE, vec3(uv, 3.0), 0.0).z);
+    return specularMeanLobes(weights, textureLod(SG_SPECULAR_TABLE, vec3(uv, 4.0), 0.0),
+                             textureLod(SG_SPECULAR_TABLE, vec3(uv, 5.0), 0.0), alpha, normal, view);
+}
+
 // Reflected radiance of a unit light lobe = f0 x + f90 y.
 vec2 specularResponse(uint model, SgMixture mixture, float alpha, vec3 normal, vec3 view, vec3 axis, float lambda)
 {

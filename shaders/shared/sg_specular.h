@@ -73,6 +73,36 @@ STRANDLIGHT_FN SgMixture specularMixture(vec4 row0, vec4 row1, vec4 row2, vec4 r
     return mixture;
 }
 
+// The same four lobes with the cosine folded in, each as the normalised SG of equal mean direction: what a prefiltered
+// environment is looked up with. Narrow at grazing views, where one lobe about the mirror direction is far too wide.
+struct SgMeanLobes {
+    vec3 axis[4];
+    float sharpness[4];
+    float weight[4]; // sum 1
+};
+
+// Table rows 0..3 for the weights, rows 4 and 5 for the means (two lobes each).
+STRANDLIGHT_FN SgMeanLobes specularMeanLobes(vec4 weights, vec4 row4, vec4 row5, float alpha, vec3 normal, vec3 view)
+{
+    vec3 away = safeNormalize(normal * dot(normal, view) - view, vec3(0.0f));
+    // The table ends at its smallest alpha. From there the slice shrinks towards the mirror direction with alpha.
+    float shrink = min(max(alpha, 1.0e-4f) / kSpecularTableMinAlpha, 1.0f);
+    vec3 mirror = normal * (2.0f * dot(normal, view)) - view;
+    SgMeanLobes lobes;
+    for (int k = 0; k < 4; ++k) {
+        vec4 pair = k < 2 ? row4 : row5;
+        vec4 row = (k == 0 || k == 2) ? vec4(pair.x, pair.y, 0.0f, 0.0f) : vec4(pair.z, pair.w, 0.0f, 0.0f);
+        vec2 axis;
+        float sharpness;
+        decodeSpecularLobe(row, axis, sharpness);
+        vec3 lobeAxis = safeNormalize(away * axis.x + normal * axis.y, normal);
+        lobes.axis[k] = safeNormalize(mix(mirror, lobeAxis, shrink), normal);
+        lobes.sharpness[k] = sharpness / (shrink * shrink);
+        lobes.weight[k] = weights[k];
+    }
+    return lobes;
+}
+
 // (1 - v.h)^5 for light from direction l. Schlick. An Inexpensive BRDF Model for Physically-based Rendering. 1994
 STRANDLIGHT_FN float schlickWeight(vec3 view, vec3 l)
 {

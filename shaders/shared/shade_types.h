@@ -52,9 +52,10 @@ struct EnvironmentShape
     uint levels; // each half the size of the one before, stored one after the other
 };
 
-// Prefiltered level i (of kPrefilterLevels) holds perceptual roughness (i + 1) / kPrefilterLevels; roughness 0 is the
-// pyramid's level 0.
+// Prefiltered level i holds the mean radiance over normalised SGs of ln(1 + sharpness) = i * kPrefilterStep; sharper
+// lobes are looked up in the pyramid.
 STRANDLIGHT_CONST(uint) kPrefilterLevels = 8u;
+STRANDLIGHT_CONST(float) kPrefilterStep = 0.85f; // the last level has sharpness 383: 3 degrees, a texel of the level
 STRANDLIGHT_CONST(uint) kPrefilterWidth = 128u;
 STRANDLIGHT_CONST(uint) kPrefilterHeight = 64u;
 STRANDLIGHT_CONST(uint) kPrefilterSamples = 96u;
