@@ -4,8 +4,10 @@
 #include <map>
 #include <memory>
 
+#include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/gpu_scene.hpp"
+#include "passes/bake.hpp"
 #include "passes/render_frame.hpp"
 #include "passes/sgl_file.hpp"
 #include "samples/strandlight/commands.hpp"
@@ -84,6 +86,17 @@ void printStats(const Context& context, const FrameResult& frame)
                 bytesText(context.peakBytesAllocated()).c_str());
 }
 
+// Another scene's bake has its texels elsewhere: refused before any work.
+void checkBakeOfScene(const Options& o, const SgBake& bake, const Scene& scene)
+{
+    if (bake.info.geometryHash != hashGeometry(scene))
+        throw FileError(o.bake, "", "was baked from other geometry (" + bake.info.scene + ")");
+    if (bake.info.environmentHash != hashEnvironment(scene))
+        throw FileError(o.bake, "",
+                        bake.environment ? "was baked with another environment: give it with --env"
+                                         : "was baked without an environment");
+}
+
 int run(Options& o)
 {
     const auto start = std::chrono::steady_clock::now();
@@ -97,6 +110,7 @@ int run(Options& o)
     o.settings.specular = kSpecularModels.at(o.specularName);
     const SgBake bake = loadSgl(o.bake);
     const Scene scene = openScene(o.scene);
+    checkBakeOfScene(o, bake, scene);
     const Camera camera = chooseCamera(scene, o.view.camera);
     Context context = openDevice(o.device);
 

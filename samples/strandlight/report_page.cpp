@@ -95,8 +95,8 @@ std::string header(const ReportPage& page)
     for (const Json* run : {&page.render, &page.bake, &page.truth})
         if (run->contains("device")) {
             const Json& device = (*run)["device"];
-            made += ", on " + escape(device.value("name", "")) + " (" +
-                    escape(device.value("driver", "")) + ")";
+            made += "<br>" + escape(device.value("name", "")) + ", driver " +
+                    escape(device.value("driver", ""));
             break;
         }
     return "<header><h1>" + escape(page.title) + "</h1>\n<p class=\"soft\">" + made +
@@ -112,7 +112,7 @@ std::string facts(const ReportPage& page)
     if (page.bake.contains("result"))
         list += fact("bake", fixed(page.bake["result"].value("seconds", 0.0), 0), "s");
     if (page.render.contains("result"))
-        list += fact("frame", fixed(page.render["result"].value("milliseconds", 0.0), 1), "ms");
+        list += fact("frame", fixed(page.render["result"].value("milliseconds", 0.0), 0), "ms");
     return "<dl class=\"facts\">\n" + list + "</dl>\n";
 }
 
@@ -196,7 +196,7 @@ std::string passTable(const Json& render)
     for (const Json& pass : result["skipped"])
         skipped += (skipped.empty() ? "" : "; ") + escape(pass.get<std::string>());
     if (!skipped.empty())
-        text += "<p class=\"soft\">Not run: " + skipped + ".</p>\n";
+        text += "<p class=\"soft note\">Not run: " + skipped + ".</p>\n";
     return text;
 }
 

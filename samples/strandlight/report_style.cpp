@@ -18,9 +18,9 @@ const char* const kReportStyle = R"css(
 body { margin: 0; background: var(--ground); color: var(--ink); font: 16px/1.5 var(--sans); }
 main { max-width: 72rem; margin: 0 auto; padding: 2.5rem 1.5rem 4rem; }
 h1 { font-size: 1.75rem; line-height: 1.2; font-weight: 650; letter-spacing: -0.01em; margin: 0 0 .35rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.05rem; font-weight: 650; margin: 0 0 .6rem; }
 p { margin: 0 0 .6rem; max-width: 46rem; }
 .soft { color: var(--soft); }
+.note { font-size: .875rem; margin-top: .6rem; }
 .facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(8.5rem, 1fr)); margin: 1.8rem 0 2rem;
   border-top: 1px solid var(--line); border-bottom: 1px solid var(--line); }
 .facts div { padding: .7rem 1rem .75rem 0; }
