@@ -42,6 +42,10 @@ int run(int argc, char** argv)
     const cli::Command commands[] = {
         cli::addInfo(app),    cli::addBake(app), cli::addRender(app), cli::addReference(app),
         cli::addCompare(app), cli::addFits(app), cli::addReport(app), cli::addNnCheck(app)};
+    // CLI11 would only say that a subcommand is missing.
+    if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1]))
+        return fail("'" + std::string(argv[1]) +
+                    "' is not a command; `strandlight --help` lists them");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

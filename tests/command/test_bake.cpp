@@ -94,7 +94,7 @@ TEST_CASE("another seed gives another bake")
 
 TEST_CASE("a bake interrupted during capture resumes to the same bytes")
 {
-    checkResume({"--atlas", "24", "--lightfield", "8", "--spp", "96", "--steps", "20"});
+    checkResume({"--atlas", "24", "--lightfield", "8", "--spp", "40", "--steps", "20"});
 }
 
 TEST_CASE("a bake interrupted during the fit resumes to the same bytes")
@@ -106,7 +106,7 @@ TEST_CASE("a checkpoint of other settings is refused")
 {
     const TemporaryFolder folder;
     const std::string output = (folder.path() / "room.sgl").string();
-    const Words settings{"--atlas", "24", "--lightfield", "8", "--spp", "96", "--steps", "20"};
+    const Words settings{"--atlas", "24", "--lightfield", "8", "--spp", "40", "--steps", "20"};
     if (!interruptBake(output, settings)) {
         MESSAGE("no interruption met a bake at work: this device is too fast for these settings");
         return;
