@@ -63,7 +63,10 @@ TEST_CASE("every op: the device computes what the twin computes, and the same bi
 
 TEST_CASE("weights by shuffle and weights by plain loads give the same bits")
 {
-    // A device with fewer than eight lanes takes the second path.
+    if (context().subgroupSize() < 8) { // such a device takes the second path in every other test
+        MESSAGE("fewer than eight lanes: no shuffles to compare with");
+        return;
+    }
     const TensorDesc xDesc{2, 6, 9, 7};
     const Conv2dDesc conv{.in = 6, .out = 13, .stride = {2, 2}};
     const TensorDesc yDesc = conv.output(xDesc);

@@ -113,6 +113,38 @@ TEST_CASE("U-Net: twenty training steps follow the twin")
     CHECK_LE(relativeError(parameters.download(), values), 1e-4);
 }
 
+TEST_CASE("U-Net: one bright pixel changes nothing outside its receptive field")
+{
+    // An output pixel sees 8 pixels up and left and 5 down and right: out (1), two strided levels
+    // (4 r - 4 .. 4 r + 4).
+    constexpr int kRadius = 8;
+    const UNetDesc net;
+    const TensorDesc xDesc{1, 24, 32, 40};
+    Parameters parameters(context(), net.parameters(), 9);
+    std::vector<float> x = randomValues<float>(xDesc.elements(), 82, 0.0f, 1.0f);
+    const auto run = [&] {
+        RenderGraph graph(context());
+        const ParameterIds ids(graph, parameters);
+        const UNetValues values = unetForward(graph, net, ids, uploadTensor(graph, "x", xDesc, x));
+        graph.output(values.y.buffer);
+        graph.execute();
+        return graph.read<float>(values.y.buffer);
+    };
+    const std::vector<float> calm = run();
+    constexpr int kY = 17, kX = 21;
+    x[std::size_t(5 * 32 + kY) * 40 + kX] = 1e6f;
+    const std::vector<float> bright = run();
+    std::uint32_t changed = 0, leaked = 0;
+    for (int i = 0; i < int(calm.size()); ++i) {
+        const int py = i / 40 % 32, px = i % 40;
+        const bool differs = calm[std::size_t(i)] != bright[std::size_t(i)];
+        changed += differs;
+        leaked += differs && (std::abs(py - kY) > kRadius || std::abs(px - kX) > kRadius);
+    }
+    CHECK_GT(changed, 0);
+    CHECK_EQ(leaked, 0);
+}
+
 TEST_CASE("NaN and infinity in an input are found, named, and never reach the weights")
 {
     Parameters parameters(context(), kEncoder.parameters(), 5);
