@@ -5,8 +5,9 @@
 // reflection and its denominator the unoccluded environment reflected at the same blur: each of the BRDF's lobes
 // widened by the light lobes'. What remains of the ratio is visibility; the unwidened look-up brings back the detail
 // that the lobes cannot hold. On rough surfaces both look-ups agree and the lobes alone decide.
-// Where the environment is dim, the lobes of a fit say little: the ratio then tends to the visibility of diffuse light
-// (as a Wiener filter does, with a noise of kFitNoise of the mean radiance).
+// Where the environment is dim, the lobes of a fit say little. The ratio is therefore an estimate (Wiener's): its prior
+// is the visibility w of diffuse light with the variance w (1 - w) of something either seen or not, its measurement
+// the quotient with a noise of kFitNoise of the mean radiance. Open surfaces (w = 1) keep the full environment.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -38,7 +39,7 @@ layout(push_constant, scalar) uniform Push { SgEnvironmentPush push; };
 #include "sg/lobe_fetch.glsl"
 #include "sg/specular_models.glsl"
 
-const float kFitNoise = 0.25;
+const float kFitNoise = 0.2;
 
 void main()
 {
@@ -101,9 +102,11 @@ void main()
     // Visibility of diffuse light: the cosine is nearly an SG of sharpness 2.133 (sgIrradianceWang).
     vec3 mean = prefilteredRadiance(push.environment, normalWorld, 2.133);
     vec3 diffuseVisibility = clamp(irradiance / max(kPi * mean, vec3(1e-6)), 0.0, 1.0);
-    vec3 noise = kFitNoise * mean * (specular.rgb * mixture.scale + f90 * mixture.bias);
-    vec3 noise2 = noise * noise + 1e-12;
-    vec3 ratio = (max(reflected, vec3(0.0)) * blurred + noise2 * diffuseVisibility) / (blurred * blurred + noise2);
-    vec3 radiance = sharp * min(ratio, vec3(1.0));
+    vec3 denominator = max(blurred, vec3(1e-6));
+    vec3 noise = kFitNoise * mean * (specular.rgb * mixture.scale + f90 * mixture.bias) / denominator;
+    vec3 variance = diffuseVisibility * (1.0 - diffuseVisibility) + 0.01; // the estimate of w has an error too
+    vec3 gain = variance / (variance + noise * noise + 1e-12);
+    vec3 ratio = mix(diffuseVisibility, clamp(reflected / denominator, 0.0, 1.0), gain);
+    vec3 radiance = sharp * ratio;
     imageStore(lit, pixel, vec4(imageLoad(lit, pixel).rgb + radiance, 1.0));
 }
