@@ -12,6 +12,7 @@
 #include "passes/fit_report.hpp"
 #include "passes/light_field_baselines.hpp"
 #include "passes/lightfield_capture.hpp"
+#include "passes/sg_energy.hpp"
 #include "passes/sg_fit.hpp"
 
 namespace strandlight {
@@ -150,7 +151,9 @@ SgField fit(Context& context, const FitProblem& problem, const FitSettings& sett
             progress = state;
             saver.save();
         };
-    return fitLobes(context, problem, settings, nullptr, &checkpoint);
+    SgField field = fitLobes(context, problem, settings, nullptr, &checkpoint);
+    matchIrradiance(problem, field);
+    return field;
 }
 
 double rmseAtTexels(const FitProblem& problem, const SgField& field)

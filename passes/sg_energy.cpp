@@ -1,0 +1,98 @@
+#include "passes/sg_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/base/assert.hpp"
+#include "shaders/shared/rgb9e5.h"
+#include "shaders/shared/sg_diffuse.h"
+#include "shaders/shared/sg_fit_types.h"
+
+namespace strandlight {
+
+namespace {
+
+// Irradiance of the captured images. [texel]; texels without an image get 0.
+std::vector<glm::dvec3> capturedIrradiance(const FitProblem& problem)
+{
+    const std::uint32_t texels = problem.texelCount();
+    std::vector<glm::dvec3> out(texels, glm::dvec3(0.0));
+    double cosineSum = 0.0;
+    for (const glm::vec4& direction : problem.directions)
+        cosineSum += double(direction.z) * double(direction.w);
+    for (std::uint32_t d = 0; d < problem.directionCount(); ++d) {
+        // The cells' cosines add up to pi exactly, whatever the midpoint rule says.
+        const double weight = double(problem.directions[d].z) * double(problem.directions[d].w) *
+                              double(gpu::kPi) / cosineSum;
+        for (std::uint32_t t = 0; t < texels; ++t)
+            if (problem.scales[t] >= 0.0f)
+                out[t] +=
+                    weight *
+                    glm::dvec3(gpu::unpackRgb9e5(problem.images[std::size_t(d) * texels + t]));
+    }
+    return out;
+}
+
+std::vector<glm::dvec3> lobeIrradiance(const FitProblem& problem, const SgField& field)
+{
+    std::vector<glm::dvec3> out(problem.texelCount(), glm::dvec3(0.0));
+    for (std::uint32_t t = 0; t < problem.texelCount(); ++t)
+        for (std::uint32_t k = 0; problem.scales[t] >= 0.0f && k < field.lobeCount; ++k) {
+            const SgLobe& lobe = field.lobes[std::size_t(t) * field.lobeCount + k];
+            out[t] += glm::dvec3(lobe.amplitude) *
+                      double(gpu::sgIrradiance(std::exp(lobe.logSharpness), lobe.axis.z));
+        }
+    return out;
+}
+
+void averageOverNeighbours(const FitCells& cells, std::vector<glm::dvec3>& values)
+{
+    std::vector<glm::dvec3> next = values;
+    for (std::uint32_t t = 0; t < cells.texelCount; ++t)
+        for (std::uint32_t side = 0; side < 4; ++side) {
+            const std::uint32_t other = cells.neighbours[std::size_t(side) * cells.texelCount + t];
+            if (other != gpu::kSgFitNone)
+                next[t] += values[other];
+        }
+    values = std::move(next); // sums, not means: only the ratio of two such arrays is used
+}
+
+} // namespace
+
+EnergyStatistics matchIrradiance(const FitProblem& problem, SgField& field,
+                                 const EnergySettings& settings)
+{
+    STRANDLIGHT_ASSERT_EQ(field.lobes.size(), std::size_t(problem.texelCount()) * field.lobeCount);
+    EnergyStatistics statistics;
+    std::vector<glm::dvec3> wanted = capturedIrradiance(problem);
+    std::vector<glm::dvec3> given = lobeIrradiance(problem, field);
+    glm::dvec3 wantedSum(0.0), givenSum(0.0);
+    for (std::uint32_t t = 0; t < problem.texelCount(); ++t) {
+        wantedSum += wanted[t];
+        givenSum += given[t];
+    }
+    const double total = wantedSum.x + wantedSum.y + wantedSum.z;
+    statistics.meanRatioBefore = total > 0.0 ? (givenSum.x + givenSum.y + givenSum.z) / total : 1.0;
+
+    for (std::uint32_t round = 0; round < settings.rounds; ++round) {
+        averageOverNeighbours(problem.cells, wanted);
+        averageOverNeighbours(problem.cells, given);
+    }
+    const double limit = settings.largestFactor;
+    for (std::uint32_t t = 0; t < problem.texelCount(); ++t) {
+        glm::vec3 factor(1.0f);
+        for (int c = 0; c < 3; ++c) {
+            if (given[t][c] <= 1e-12 * total)
+                continue;
+            const double ratio = wanted[t][c] / given[t][c];
+            statistics.clampedFactors += ratio > limit || ratio < 1.0 / limit;
+            factor[c] = float(std::clamp(ratio, 1.0 / limit, limit));
+        }
+        for (std::uint32_t k = 0; k < field.lobeCount; ++k)
+            field.lobes[std::size_t(t) * field.lobeCount + k].amplitude *= factor;
+    }
+    return statistics;
+}
+
+} // namespace strandlight
