@@ -42,8 +42,9 @@ int run(int argc, char** argv)
     const cli::Command commands[] = {
         cli::addInfo(app),    cli::addBake(app), cli::addRender(app), cli::addReference(app),
         cli::addCompare(app), cli::addFits(app), cli::addReport(app), cli::addNnCheck(app)};
-    // CLI11 would only say that a subcommand is missing.
-    if (argc > 1 && argv[1][0] != '-' && !app.get_subcommand_no_throw(argv[1]))
+    // Of an unknown command CLI11 would only say that a subcommand is missing.
+    const auto isNamed = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(isNamed).empty())
         return fail("'" + std::string(argv[1]) +
                     "' is not a command; `strandlight --help` lists them");
     try {
