@@ -1,8 +1,12 @@
 // Shading from lobes whose answer is known in closed form.
+#include <algorithm>
 #include <cmath>
 
 #include <doctest/doctest.h>
 
+#include "engine/scene/camera.hpp"
+#include "engine/scene/procedural.hpp"
+#include "passes/bake.hpp"
 #include "passes/path_trace.hpp"
 #include "passes/specular_lut.hpp"
 #include "shaders/shared/brdf.h"
@@ -31,6 +35,33 @@ TEST_CASE("shade: emission adds to reflection as in a furnace")
     const FrameResult frame =
         render(scene, bakeOf(scene, kUp, 1e-4f, glm::vec3(2.0f)), cameraAt(0.0f));
     checkClose(centre(frame), glm::vec3(2.0f), 1e-3);
+}
+
+TEST_CASE("shade: a baked furnace shows 1 / (1 - rho)")
+{
+    const Scene scene = buildFurnaceScene(0.5f);
+    const SgBake bake = bakeScene(context(), scene,
+                                  {.atlasResolution = 24,
+                                   .lightfieldSize = 8,
+                                   .lobes = 4,
+                                   .samplesPerDirection = 16,
+                                   .bounces = 24,
+                                   .steps = 300});
+    GpuScene device = uploadScene(context(), scene);
+    const FrameResult frame = renderFrame(context(), scene, device, bake, defaultCamera(scene),
+                                          {.width = 32, .height = 24});
+    double sum = 0.0;
+    double worst = 0.0;
+    for (const glm::vec4& pixel : frame.radiance.pixels) {
+        sum += pixel.x;
+        worst = std::max(worst, std::abs(pixel.x / 2.0 - 1.0));
+    }
+    // 16 paths per direction end with a standard error of about 1 % of a texel's irradiance; the
+    // fit adds its own.
+    CHECK(sum / double(frame.radiance.pixels.size()) == doctest::Approx(2.0).epsilon(0.02));
+    CHECK(worst < 0.05);
+    MESSAGE("mean " << sum / double(frame.radiance.pixels.size()) << ", worst pixel off by "
+                    << worst);
 }
 
 TEST_CASE("shade: one sharp lobe is a directional light")
