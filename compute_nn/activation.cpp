@@ -16,11 +16,7 @@ gpu::ElementPush elementPush(const TensorId& in, const TensorId& out, const Tens
                              float slope)
 {
     STRANDLIGHT_ASSERT(in.desc == out.desc && saved.desc == out.desc);
-    return {in.view(),
-            out.view(),
-            saved.view(),
-            out.desc.c * out.desc.pixels(),
-            slope};
+    return {in.view(), out.view(), saved.view(), out.desc.c * out.desc.pixels(), slope};
 }
 
 TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t kind, float slope,
@@ -30,7 +26,8 @@ TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t
     const BufferId from = pass.read(x.buffer);
     const BufferId to = pass.write(y.buffer);
     const gpu::ElementPush push = elementPush(x, y, x, slope);
-    pass.dispatch(kernels::activation, {push.channelPixels, y.desc.n, 1}, push, {from, from, to}, {kind, 0});
+    pass.dispatch(kernels::activation, {push.channelPixels, y.desc.n, 1}, push, {from, from, to},
+                  {kind, 0});
     return y.as(to);
 }
 
