@@ -13,7 +13,7 @@ namespace strandlight {
 namespace {
 
 constexpr std::uint32_t kMaskLayers = 16;
-constexpr std::uint32_t kRouletteBounce = 3;
+constexpr std::uint32_t kRouletteBounce = 5;
 constexpr float kFar = 1e30f;
 
 struct Shading
@@ -275,7 +275,7 @@ glm::vec3 Tracer::radiance(glm::vec3 origin, glm::vec3 direction, std::uint32_t 
         pdf = f.pdf;
         if (bounce + 1 >= kRouletteBounce) {
             const float survival =
-                std::min(std::max({throughput.x, throughput.y, throughput.z}), 0.95f);
+                std::min(std::sqrt(std::max({throughput.x, throughput.y, throughput.z})), 1.0f);
             if (!(draw(2).y < survival))
                 return result;
             throughput /= survival;

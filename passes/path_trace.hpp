@@ -16,7 +16,7 @@ struct ReferenceSettings
     std::uint32_t width = 320;
     std::uint32_t height = 240;
     std::uint32_t samples = 64; // per pixel, box filter
-    std::uint32_t bounces = 16; // reflections; Russian roulette from the third
+    std::uint32_t bounces = 16; // reflections; Russian roulette from the fifth
     std::uint32_t seed = 1;
     std::uint32_t pixelsPerDispatch =
         0; // 0: chosen from measured time; results do not depend on it

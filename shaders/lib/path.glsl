@@ -11,47 +11,17 @@
 #ifndef STRANDLIGHT_LIB_PATH_GLSL
 #define STRANDLIGHT_LIB_PATH_GLSL
 
-#extension GL_EXT_control_flow_attributes : require
+#include "lib/path_lights.glsl"
+#include "lib/path_scene.glsl"
 
-#include "shared/brdf.h"
-#include "shared/environment.h"
-#include "shared/light_types.h"
-#include "shared/octahedral.h"
-#include "shared/rng.h"
-#include "lib/trace.glsl"
-#include "lib/path_material.glsl"
-
-const bool kHasEmitters = (kFeatures & kFeatureEmitters) != 0u;
-const bool kHasPunctual = (kFeatures & kFeaturePunctual) != 0u;
-const bool kHasEnvironment = (kFeatures & kFeatureEnvironment) != 0u;
-const bool kHasAlphaMask = (kFeatures & kFeatureAlphaMask) != 0u;
-const bool kHasBaseColorTexture = (kFeatures & kFeatureBaseColorTexture) != 0u;
-const bool kHasNormalTexture = (kFeatures & kFeatureNormalTexture) != 0u;
-const bool kHasEmissiveTexture = (kFeatures & kFeatureEmissiveTexture) != 0u;
-const bool kHasTexCoord1 = (kFeatures & kFeatureTexCoord1) != 0u;
-const bool kHasLayer = (kFeatures & kFeatureLayer) != 0u;
-// The textures of the scene as kMaterial... bits: features and bits are in the same order.
-const uint kTextureBits = (kFeatures / kFeatureBaseColorTexture) & kMaterialAnyTexture;
-const bool kHasTexCoords = (kFeatures & (kFeatureBaseColorTexture | kFeatureMetallicRoughnessTexture |
-                                         kFeatureNormalTexture | kFeatureEmissiveTexture)) != 0u;
-
-// Masked surfaces that one ray may pass.
-const uint kMaskLayers = 16u;
-// From this bounce on, paths end by Russian roulette.
-const uint kRouletteBounce = 3u;
+// From this bounce on, paths end by Russian roulette. On the Cornell box the later start and the square root below have
+// 0.6 times the variance-time product of bounce 3 without the root.
+const uint kRouletteBounce = 5u;
 // An invocation starts no path beyond the first mark and abandons one at the second (counted): lavapipe silently ends all
 // loops at 65535 trips. The second mark and two rays at their own bound stay well below that.
 const uint kTripsPerSegment = kHasTexCoords ? 64u : 4u; // besides its rays
 const uint kTripsToStart = 12000u;
 const uint kTripsToAbandon = 32000u;
-
-struct PathContext
-{
-    BvhGrid grid;
-    uint triangleCount;
-    uint seed;
-    uint bounces;
-};
 
 struct Path
 {
@@ -69,184 +39,6 @@ struct Path
     uint trips;      // of this invocation; survives the path
     uint lost;       // rays or paths given up; survives the path
 };
-
-vec2 uintPairToVec2(uint a, uint b)
-{
-    return vec2(uintBitsToFloat(a), uintBitsToFloat(b));
-}
-
-vec3 unpackDirection(uint word)
-{
-    return octDecode(unpackSnorm2x16(word) * 0.5 + 0.5);
-}
-
-TexCoords fetchTexCoords(uint slot, float u, float v, uint triangleCount)
-{
-    TexCoords t;
-    t.uv0 = vec2(0.0);
-    t.uv1 = vec2(0.0);
-    if (kHasTexCoords) {
-        uvec4 a = STRANDLIGHT_CORNER(slot * 3u);
-        uvec4 b = STRANDLIGHT_CORNER(slot * 3u + 1u);
-        uvec4 c = STRANDLIGHT_CORNER(slot * 3u + 2u);
-        t.uv0 = uintPairToVec2(a.y, a.z) * (1.0 - u - v) + uintPairToVec2(b.y, b.z) * u + uintPairToVec2(c.y, c.z) * v;
-    }
-    if (kHasTexCoord1) {
-        uvec4 ab = STRANDLIGHT_CORNER(triangleCount * 3u + slot * 2u);
-        uvec4 c = STRANDLIGHT_CORNER(triangleCount * 3u + slot * 2u + 1u);
-        t.uv1 = uintPairToVec2(ab.x, ab.y) * (1.0 - u - v) + uintPairToVec2(ab.z, ab.w) * u + uintPairToVec2(c.x, c.y) * v;
-    }
-    return t;
-}
-
-uint texturesOf(uint material)
-{
-    return uint(STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).w) & kTextureBits;
-}
-
-// The nearest surface, or with anyHit any, that its mask does not cut away.
-Hit traceSurface(PathContext context, vec3 origin, vec3 direction, float tMax, bool anyHit)
-{
-    if (!kHasAlphaMask)
-        return traverse(context.grid, origin, direction, 0.0, tMax, anyHit);
-    // Behind a hole the search goes on; that needs the hits in order.
-    float tMin = 0.0;
-    uint rounds = 0u;
-    Hit hit;
-    for (uint layer = 0u; layer < kMaskLayers; ++layer) {
-        hit = traverse(context.grid, origin, direction, tMin, tMax, false);
-        rounds += hit.rounds + 1u; // the mask's own lookup
-        if (hit.slot == kNoHit)
-            break;
-        uint material = fetchTriangle(hit.slot * 3u + 1u).w;
-        float cutoff = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 3u).z;
-        TexCoords t = fetchTexCoords(hit.slot, hit.u, hit.v, context.triangleCount);
-        float alpha = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels).w;
-        if (kHasBaseColorTexture)
-            alpha *= sampleTextures(material, texturesOf(material) & kMaterialBaseColorTexture, t).baseColor.w;
-        if (cutoff < 0.0 || alpha >= cutoff)
-            break;
-        hit.lost = true; // unless the next layer is solid
-        tMin = hit.t;
-    }
-    hit.rounds = rounds;
-    return hit;
-}
-
-// --- Environment ---------------------------------------------------------------------------------------------------
-
-vec3 fetchEnvironment(ivec2 texel, ivec2 size)
-{
-    int x = texel.x < 0 ? texel.x + size.x : (texel.x >= size.x ? texel.x - size.x : texel.x);
-    int y = clamp(texel.y, 0, size.y - 1);
-    return STRANDLIGHT_ENVIRONMENT(y * size.x + x).xyz;
-}
-
-// Bilinear, like environmentRadiance() on the CPU.
-vec3 environmentRadiance(vec2 uv, ivec2 size)
-{
-    vec2 p = uv * vec2(size) - 0.5;
-    vec2 base = floor(p);
-    vec2 f = p - base;
-    ivec2 t = ivec2(base);
-    vec3 low = mix(fetchEnvironment(t, size), fetchEnvironment(t + ivec2(1, 0), size), f.x);
-    vec3 high = mix(fetchEnvironment(t + ivec2(0, 1), size), fetchEnvironment(t + ivec2(1, 1), size), f.x);
-    return mix(low, high, f.y);
-}
-
-// Density over solid angle of a cell's density over (u, v).
-float environmentPdf(float density, vec3 direction)
-{
-    float sine = sqrt(max(1.0 - direction.y * direction.y, 0.0));
-    return sine > 1e-6 ? density / (2.0 * kPi * kPi * sine) : 0.0;
-}
-
-float environmentDensity(vec2 uv, uvec2 grid, ivec2 size)
-{
-    uvec2 cell = min(uvec2(uv * vec2(grid)), grid - 1u);
-    return STRANDLIGHT_ENVIRONMENT(uint(size.x * size.y) + cell.y * grid.x + cell.x).z;
-}
-
-// --- Light sampling ------------------------------------------------------------------------------------------------
-
-struct LightSample
-{
-    vec3 direction;
-    float distanceTo;
-    vec3 radiance;  // for delta lights: irradiance
-    float pdf;      // over solid angle; for delta lights the probability of the choice
-    bool delta;
-};
-
-vec3 emissionOf(uint material, TexCoords t)
-{
-    vec3 emission = STRANDLIGHT_MATERIAL_TEXEL(material * kMaterialTexels + 1u).xyz;
-    if (kHasEmissiveTexture)
-        emission *= sampleTextures(material, texturesOf(material) & kMaterialEmissiveTexture, t).emissive.xyz;
-    return emission;
-}
-
-LightSample sampleEmitter(PathContext context, uvec4 header, vec3 position, vec3 uniforms, float probability)
-{
-    AliasDraw draw = drawAlias(uniforms.z, header.x);
-    uvec4 entry = STRANDLIGHT_LIGHT_TABLE(kLightTableHeader + draw.column);
-    if (draw.rest >= uintBitsToFloat(entry.x))
-        entry = STRANDLIGHT_LIGHT_TABLE(kLightTableHeader + entry.y);
-    bool punctual = kHasPunctual && (entry.z & kPunctualBit) != 0u;
-    uint slot = punctual ? 0u : entry.z;
-
-    uvec4 c0 = fetchTriangle(slot * 3u);
-    uvec4 c1 = fetchTriangle(slot * 3u + 1u);
-    uvec4 c2 = fetchTriangle(slot * 3u + 2u);
-    vec2 w = sampleTriangle(uniforms.x, uniforms.y);
-    vec3 p0 = positionOf(c0);
-    vec3 e1 = positionOf(c1) - p0;
-    vec3 e2 = positionOf(c2) - p0;
-    vec3 normal = cross(e1, e2);
-    normal *= inversesqrt(max(dot(normal, normal), 1e-36));
-    vec3 offset = p0 + e1 * w.x + e2 * w.y - position;
-    float squared = max(dot(offset, offset), 1e-30);
-
-    LightSample light;
-    light.distanceTo = sqrt(squared);
-    light.direction = offset / light.distanceTo;
-    float cosine = -dot(normal, light.direction);
-    uint flags = uint(STRANDLIGHT_MATERIAL_TEXEL(c1.w * kMaterialTexels + 3u).w);
-    bool shines = cosine > 0.0 || (flags & kMaterialDoubleSided) != 0u;
-    vec3 emission = emissionOf(c1.w, fetchTexCoords(slot, w.x, w.y, context.triangleCount));
-    light.radiance = shines ? emission : vec3(0.0);
-    float density = uintBitsToFloat(c2.w) * squared / max(abs(cosine), 1e-9);
-    light.pdf = probability * (abs(cosine) > 1e-9 ? density : 0.0);
-    light.delta = false;
-    if (punctual) {
-        light.radiance = punctualIrradiance(STRANDLIGHT_PUNCTUAL(entry.z & ~kPunctualBit), position, light.direction,
-                                            light.distanceTo);
-        light.pdf = probability * uintBitsToFloat(entry.w);
-        light.delta = true;
-    }
-    return light;
-}
-
-LightSample sampleEnvironment(uvec4 header, ivec2 size, vec3 uniforms, float probability)
-{
-    uint cells = header.z * header.w;
-    uint first = uint(size.x * size.y);
-    AliasDraw draw = drawAlias(uniforms.z, cells);
-    vec4 cell = STRANDLIGHT_ENVIRONMENT(first + draw.column);
-    uint index = draw.column;
-    if (draw.rest >= cell.x) {
-        index = uint(cell.y);
-        cell = STRANDLIGHT_ENVIRONMENT(first + index);
-    }
-    vec2 uv = (vec2(float(index % header.z), float(index / header.z)) + uniforms.xy) / vec2(header.zw);
-    LightSample light;
-    light.direction = environmentDirection(uv.x, uv.y);
-    light.distanceTo = 1e30;
-    light.radiance = environmentRadiance(uv, size);
-    light.pdf = probability * environmentPdf(cell.z, light.direction);
-    light.delta = false;
-    return light;
-}
 
 // --- Surfaces ------------------------------------------------------------------------------------------------------
 
@@ -422,7 +214,7 @@ void advancePath(inout Path path, PathContext context)
     path.bounce += 1u;
     path.alive = scattered;
     if (path.bounce >= kRouletteBounce) {
-        float survival = clamp(max(max(path.throughput.x, path.throughput.y), path.throughput.z), 0.0, 0.95);
+        float survival = min(sqrt(max(max(path.throughput.x, path.throughput.y), path.throughput.z)), 1.0);
         float u = uniform3(path.item, path.sampleIndex, dimension + 2u, context.seed).y;
         path.alive = path.alive && u < survival;
         path.throughput /= max(survival, kSmallestPdf);
