@@ -36,7 +36,7 @@ void pyramidLevel(EnvironmentShape shape, uint level, out uint offset, out uint 
     }
 }
 
-vec3 pyramidTexel(EnvironmentShape shape, vec3 direction, uint level)
+vec3 pyramidTexel(EnvironmentShape shape, vec2 uv, uint level)
 {
     uint offset;
     uint width;
@@ -44,7 +44,7 @@ vec3 pyramidTexel(EnvironmentShape shape, vec3 direction, uint level)
     pyramidLevel(shape, level, offset, width, height);
     uvec4 texels;
     vec2 blend;
-    latLongFootprint(environmentUv(direction), width, height, texels, blend);
+    latLongFootprint(uv, width, height, texels, blend);
     vec3 top = mix(imageLoad(ENVIRONMENT_PYRAMID, int(offset + texels.x)).rgb,
                    imageLoad(ENVIRONMENT_PYRAMID, int(offset + texels.y)).rgb, blend.x);
     vec3 bottom = mix(imageLoad(ENVIRONMENT_PYRAMID, int(offset + texels.z)).rgb,
@@ -53,23 +53,20 @@ vec3 pyramidTexel(EnvironmentShape shape, vec3 direction, uint level)
 }
 
 // Trilinear; `level` may lie between levels and beyond them.
-vec3 pyramidRadiance(EnvironmentShape shape, vec3 direction, float level)
+vec3 pyramidRadiance(EnvironmentShape shape, vec2 uv, float level)
 {
     float clamped = clamp(level, 0.0, float(shape.levels - 1u));
     uint low = uint(clamped);
-    vec3 radiance = pyramidTexel(shape, direction, low);
+    vec3 radiance = pyramidTexel(shape, uv, low);
     if (clamped > float(low)) {
-        radiance = mix(radiance, pyramidTexel(shape, direction, low + 1u), clamped - float(low));
+        radiance = mix(radiance, pyramidTexel(shape, uv, low + 1u), clamped - float(low));
     }
     return radiance;
 }
 
 #ifdef ENVIRONMENT_PREFILTERED
-vec3 prefilteredLevel(vec3 direction, uint level)
+vec3 prefilteredTexels(uvec4 texels, vec2 blend, uint level)
 {
-    uvec4 texels;
-    vec2 blend;
-    latLongFootprint(environmentUv(direction), kPrefilterWidth, kPrefilterHeight, texels, blend);
     uint offset = level * kPrefilterWidth * kPrefilterHeight;
     vec3 top = mix(imageLoad(ENVIRONMENT_PREFILTERED, int(offset + texels.x)).rgb,
                    imageLoad(ENVIRONMENT_PREFILTERED, int(offset + texels.y)).rgb, blend.x);
@@ -83,17 +80,22 @@ vec3 prefilteredRadiance(EnvironmentShape shape, vec3 direction, float sharpness
 {
     float level = log(1.0 + sharpness) / kPrefilterStep;
     float last = float(kPrefilterLevels - 1u);
+    vec2 uv = environmentUv(direction);
     vec3 wide = vec3(0.0);
     if (level < last) {
+        uvec4 texels;
+        vec2 blend;
+        latLongFootprint(uv, kPrefilterWidth, kPrefilterHeight, texels, blend);
         uint low = uint(level);
-        wide = mix(prefilteredLevel(direction, low), prefilteredLevel(direction, low + 1u), level - float(low));
+        wide = mix(prefilteredTexels(texels, blend, low), prefilteredTexels(texels, blend, low + 1u),
+                   level - float(low));
         if (level <= last - 1.0) {
             return wide;
         }
     }
     // Bilinear look-up of box-filtered texels of width h has the variance h^2 / 4; an SG has 1 / sharpness.
     float texel = 2.0 * kPi / float(shape.width);
-    vec3 narrow = pyramidRadiance(shape, direction, log2(2.0 * inversesqrt(sharpness) / texel));
+    vec3 narrow = pyramidRadiance(shape, uv, log2(2.0 * inversesqrt(sharpness) / texel));
     return level >= last ? narrow : mix(wide, narrow, level - (last - 1.0));
 }
 #endif

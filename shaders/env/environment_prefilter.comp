@@ -51,7 +51,8 @@ void main()
         float density = exp(-sharpness * height) / sgIntegral(sharpness);
         // One level coarser than the sample's own cell: neighbouring samples overlap.
         float sampleSolidAngle = 1.0 / (float(kPrefilterSamples) * density);
-        sum += pyramidRadiance(push.environment, light, 0.5 * log2(sampleSolidAngle / texelSolidAngle) + 1.0);
+        float lod = 0.5 * log2(sampleSolidAngle / texelSolidAngle) + 1.0;
+        sum += pyramidRadiance(push.environment, environmentUv(light), lod);
     }
     imageStore(prefiltered, int(item), vec4(sum / float(kPrefilterSamples), 1.0));
 }

@@ -20,5 +20,5 @@ void main()
         return;
     }
     vec3 direction = cameraRayDirection(push.camera, vec2(pixel) + 0.5);
-    imageStore(lit, pixel, vec4(pyramidRadiance(push.environment, direction, 0.0), 1.0));
+    imageStore(lit, pixel, vec4(pyramidRadiance(push.environment, environmentUv(direction), 0.0), 1.0));
 }
