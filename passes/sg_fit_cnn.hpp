@@ -11,7 +11,7 @@
 
 namespace strandlight {
 
-// Trains the encoder for settings.cnnEpochs rounds over the texels with images, then encodes every
+// Trains the encoder for settings.cnnSteps steps on the texels with images, then encodes every
 // texel. Texels without image get the mean of their neighbours. Fills firstLoss, lastLoss and
 // skippedSteps of `statistics`. Deterministic. Throws Interrupted when the user stops.
 SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSettings& settings,

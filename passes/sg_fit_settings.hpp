@@ -44,8 +44,8 @@ struct FitSettings
         0.3f; // of looks at texels; the others are between texels. 1: texels apart
     float peakSoftening =
         0.05f; // weight of a direction: 1 / (1 + s * radiance / mean); 0: plain squares
-    float smoothness = 0.02f; // Laplacian over neighbouring texels of a chart
-    std::uint32_t cnnEpochs = 12;
+    float smoothness = 0.02f;     // Laplacian over neighbouring texels of a chart
+    std::uint32_t cnnSteps = 600; // of the encoder, 512 texels each
     std::uint32_t seed = 1;
 };
 
