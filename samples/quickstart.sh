@@ -5,14 +5,14 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# Sizes for two CPU cores: all that follows the build takes under three minutes. On a GPU, raise them.
+# Sizes for two CPU cores, where all that follows the build takes one to two minutes. On a GPU, raise them.
 scene=builtin:room
 size=480x360          # of the pictures
-atlas=96              # texels per side
+atlas=128             # texels per side
 lightfield=16         # directions per side and texel
-samples=4             # per direction
-steps=400             # of the fit
-truth_samples=128     # per pixel
+samples=4             # paths per direction
+steps=600             # of the fit
+truth_samples=256     # paths per pixel
 exposure=0            # stops
 
 samples/install_packages.sh
