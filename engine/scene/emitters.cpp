@@ -36,6 +36,23 @@ glm::vec3 averageEmission(const Scene& scene, std::uint32_t triangle,
     return sum / 16.0f;
 }
 
+// Mean luminance over a texel's area of what bilinear lookups see there: 1/8, 3/4, 1/8 along each
+// axis. A bright texel thus raises its neighbours, into which it bleeds; else they would be rare
+// and bright samples.
+double meanOverTexel(const CpuImage& image, std::uint32_t x, std::uint32_t y)
+{
+    const std::uint32_t columns[3] = {x == 0 ? image.width - 1 : x - 1, x,
+                                      x + 1 == image.width ? 0 : x + 1};
+    const std::uint32_t rows[3] = {y == 0 ? 0 : y - 1, y, y + 1 == image.height ? y : y + 1};
+    const double tap[3] = {0.125, 0.75, 0.125};
+    double sum = 0.0;
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i)
+            sum +=
+                tap[i] * tap[j] * double(gpu::luminance(glm::vec3(image.at(columns[i], rows[j]))));
+    return sum;
+}
+
 double punctualPower(const PunctualLight& light, double sceneRadius)
 {
     const double intensity = gpu::luminance(light.intensity);
@@ -151,7 +168,7 @@ EnvironmentGrid buildEnvironmentGrid(const Environment& environment)
             std::size_t(std::uint64_t(y) * grid.height / image.height) * grid.width;
         for (std::uint32_t x = 0; x < image.width; ++x)
             weights[row + std::size_t(std::uint64_t(x) * grid.width / image.width)] +=
-                sine * double(gpu::luminance(glm::vec3(image.at(x, y))));
+                sine * meanOverTexel(image, x, y);
     }
     const AliasTable alias = buildAliasTable(weights);
     const float cells = float(weights.size());

@@ -71,6 +71,29 @@ TEST_CASE("furnace: radiance is 1 / (1 - albedo)")
     }
 }
 
+TEST_CASE("furnace: the same at a millionth and a million times the size")
+{
+    for (const float scale : {1e-6f, 1e6f}) {
+        Scene scene = buildFurnaceScene(0.5f);
+        for (Vertex& vertex : scene.vertices)
+            vertex.position *= scale;
+        Camera camera = defaultCamera(buildFurnaceScene(0.5f));
+        camera.eye *= scale;
+        camera.target *= scale;
+        ReferenceSettings settings;
+        settings.width = 16;
+        settings.height = 16;
+        settings.samples = 64;
+        settings.bounces = 32;
+        TraceStatistics statistics;
+        const Moments m =
+            momentsOf(renderReference(test::context(), scene, camera, settings, &statistics));
+        CAPTURE(scale);
+        CHECK(std::abs(m.mean.x - 2.0) < 4.0 * m.standardError.x + 2e-5);
+        CHECK(statistics.rejectedSamples == 0);
+    }
+}
+
 TEST_CASE("direct light: a square above a floor point, by the form factor")
 {
     // A 2 x 2 square, one metre above and facing the point: E = L * 4 * F, F of one quarter, L = 5.
@@ -142,6 +165,73 @@ TEST_CASE("environment: a Lambert sphere in a constant sky reflects its albedo")
     const Moments m = momentsOf(renderReference(test::context(), scene, camera, settings));
     CHECK(std::abs(m.mean.x - 0.7) < 4.0 * m.standardError.x + 1e-6);
     CHECK(m.standardError.x < 0.005);
+}
+
+TEST_CASE("environment: a floor under an uneven sky, by quadrature")
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.useMaterial(lambert(0.5f));
+    mesh.quad({-5.0f, 0.0f, 5.0f}, {10.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -10.0f});
+    CpuImage sky(64, 32, glm::vec4(0.2f));
+    for (std::uint32_t y = 0; y < 32; ++y)
+        for (std::uint32_t x = 0; x < 64; ++x)
+            sky.at(x, y) += glm::vec4(0.01f * float(x));
+    sky.at(13, 6) = glm::vec4(400.0f); // a small sun
+    scene.environment = Environment{sky};
+    // Irradiance from the upper half, midpoints, 16 x 16 a texel.
+    double irradiance = 0.0;
+    constexpr int kWidth = 64 * 16;
+    constexpr int kHeight = 16 * 16;
+    for (int j = 0; j < kHeight; ++j)
+        for (int i = 0; i < kWidth; ++i) {
+            const double theta = (j + 0.5) / kHeight * 1.5707963267948966;
+            const glm::vec3 d = gpu::environmentDirection((float(i) + 0.5f) / kWidth,
+                                                          float(theta / 3.141592653589793));
+            irradiance += double(environmentRadiance(*scene.environment, d).x) * std::cos(theta) *
+                          std::sin(theta) * (1.5707963267948966 / kHeight) *
+                          (6.283185307179586 / kWidth);
+        }
+    const double expected = 0.5 * irradiance / 3.141592653589793;
+    Camera camera;
+    camera.eye = {0.0f, 2.0f, 0.1f};
+    camera.target = {0.0f, 0.0f, 0.0f};
+    ReferenceSettings settings;
+    settings.width = 24;
+    settings.height = 24;
+    settings.samples = 64;
+    settings.bounces = 1;
+    const Moments m = momentsOf(renderReference(test::context(), scene, camera, settings));
+    CAPTURE(expected);
+    CAPTURE(m.mean.x);
+    // 5e-4: midpoint rule on a bilinear sun.
+    CHECK(std::abs(m.mean.x - expected) < 4.0 * m.standardError.x + 5e-4 * expected);
+    CHECK(m.standardError.x < 0.01 * expected); // without importance sampling it would be 0.03
+}
+
+TEST_CASE("punctual light: I cos / d^2 on a Lambert floor")
+{
+    Scene scene;
+    MeshBuilder mesh(scene);
+    mesh.useMaterial(lambert(0.5f));
+    mesh.quad({-5.0f, 0.0f, 5.0f}, {10.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -10.0f});
+    PunctualLight light;
+    light.position = {1.0f, 2.0f, 0.0f};
+    light.intensity = glm::vec3(30.0f, 20.0f, 10.0f);
+    scene.lights.push_back(light);
+    Camera camera;
+    camera.eye = {-0.5f, 3.0f, 0.0f};
+    camera.target = {0.0f, 0.0f, 0.0f};
+    camera.verticalFovDegrees = 0.05f;
+    ReferenceSettings settings;
+    settings.width = 4;
+    settings.height = 4;
+    settings.samples = 2;
+    const CpuImage image = renderReference(test::context(), scene, camera, settings);
+    const double expected = 0.5 / 3.141592653589793 * 30.0 * 2.0 / std::pow(5.0, 1.5);
+    // The picture is 3 mm wide, the light differs by 0.1 % over it.
+    CHECK(double(image.at(2, 2).x) == doctest::Approx(expected).epsilon(0.002));
+    CHECK(double(image.at(2, 2).z) == doctest::Approx(expected / 3.0).epsilon(0.002));
 }
 
 TEST_CASE("no light: black, and nothing is created for light")

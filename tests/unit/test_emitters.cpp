@@ -81,7 +81,8 @@ TEST_CASE("emitters: the environment's densities integrate to one over the spher
     Environment environment;
     environment.latLong = CpuImage(96, 48, glm::vec4(0.1f));
     environment.latLong.at(70, 10) = glm::vec4(500.0f);
-    environment.latLong.at(3, 40) = glm::vec4(0.0f);
+    for (std::uint32_t k = 0; k < 9; ++k)
+        environment.latLong.at(2 + k % 3, 39 + k / 3) = glm::vec4(0.0f);
     const EnvironmentGrid grid = buildEnvironmentGrid(environment);
     REQUIRE(grid.width == 96);
     REQUIRE(grid.height == 48);
@@ -92,6 +93,7 @@ TEST_CASE("emitters: the environment's densities integrate to one over the spher
     CHECK(mean == doctest::Approx(1.0).epsilon(1e-5));
     CHECK(grid.cells[std::size_t(40) * 96 + 3].z == 0.0f);
     CHECK(grid.cells[std::size_t(10) * 96 + 70].z > 100.0f);
+    CHECK(grid.cells[std::size_t(10) * 96 + 71].z > 20.0f); // bilinear lookups bleed
 }
 
 TEST_CASE("scene features: what a scene has not is not asked for")
