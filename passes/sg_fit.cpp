@@ -133,8 +133,10 @@ SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings&
             // The encoder is trained again when a bake is resumed: it is the same to the last bit.
             if (settings.mode == FitMode::Cnn || !resume)
                 field = fitLobesByCnn(context, problem, settings, numbers);
+            FitSettings refine = settings;
+            refine.coarseSmoothness = refine.smoothness; // the encoder has found the places
             if (settings.mode == FitMode::CnnRefine)
-                field = runDirect(context, problem, settings,
+                field = runDirect(context, problem, refine,
                                   resume ? *resume : startFit(problem, field), checkpoint, numbers);
         }
         countClamps(problem, field, numbers);

@@ -185,6 +185,16 @@ double fitLearningRate(const FitSettings& settings, std::uint32_t step)
     return double(settings.learningRate) * std::min(1.0, 2.0 * (1.0 - progress));
 }
 
+double fitSmoothness(const FitSettings& settings, std::uint32_t step)
+{
+    if (!(settings.smoothness > 0.0f) || settings.coarseSmoothness <= settings.smoothness)
+        return double(settings.smoothness);
+    const double progress =
+        std::min(1.0, double(step) / (0.7 * double(std::max(settings.steps, 1u))));
+    return double(settings.coarseSmoothness) *
+           std::pow(double(settings.smoothness) / double(settings.coarseSmoothness), progress);
+}
+
 std::uint32_t fitDirectionsPerStep(const FitSettings& settings, std::uint32_t directionCount)
 {
     std::uint32_t count = std::clamp(settings.directionsPerStep, 1u, directionCount);

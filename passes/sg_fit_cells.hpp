@@ -65,6 +65,8 @@ SgField fieldFromState(const FitProblem& problem, const FitState& state);
 
 // Learning rate of step 0, 1, ...: constant, then linear to zero.
 double fitLearningRate(const FitSettings& settings, std::uint32_t step);
+// The Laplacian weight of step 0, 1, ...
+double fitSmoothness(const FitSettings& settings, std::uint32_t step);
 // The largest divisor of `directionCount` that is at most settings.directionsPerStep.
 std::uint32_t fitDirectionsPerStep(const FitSettings& settings, std::uint32_t directionCount);
 

@@ -116,7 +116,7 @@ void addSgFitStepPass(RenderGraph& graph, const SgFitShape& shape, SgFitStepIds&
         .step = step,
         .seed = settings.seed,
         .cornerFraction = settings.cornerFraction,
-        .smoothness = settings.smoothness,
+        .smoothness = float(fitSmoothness(settings, step)),
         .learningRate = float(fitLearningRate(settings, step)),
         .inverseCorrection1 = float(1.0 / (1.0 - std::pow(double(gpu::kSgFitBeta1), t))),
         .inverseCorrection2 = float(1.0 / (1.0 - std::pow(double(gpu::kSgFitBeta2), t))),

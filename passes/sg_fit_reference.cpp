@@ -250,7 +250,8 @@ void sgFitUpdateReference(const FitProblem& problem, const FitCellGradients& cel
             double gradient[gpu::kSgFitComponents];
             for (std::uint32_t c = 0; c < gpu::kSgFitComponents; ++c)
                 gradient[c] = gathered[index(c)] * (c < gpu::kSgFitAmplitude ? 1.0 : scale);
-            addSmoothness(problem, parameters, double(settings.smoothness), lobe, texel, gradient);
+            addSmoothness(problem, parameters, fitSmoothness(settings, state.step), lobe, texel,
+                          gradient);
             dvec3 dAxis(gradient[0], gradient[1], gradient[2]);
             dAxis -= axis * glm::dot(axis, dAxis);
             for (int c = 0; c < 3; ++c)

@@ -74,9 +74,9 @@ TEST_CASE("fit steps on the device follow the twin")
                                  settings, twin);
         device.run(10);
         // fp32 against double over ten steps of Adam, whose first steps are all of full length: a
-        // gradient near zero may turn its sign. Measured 2e-5; the bound leaves room for other
-        // devices' exp.
-        CHECK(relativeNorm(device.state().parameters, twin.parameters) < 1e-3);
+        // gradient near zero may turn its sign. Measured up to 1.3e-3 of the norm; a wrong term
+        // anywhere gives more than 0.1. The exact comparison is the single step below.
+        CHECK(relativeNorm(device.state().parameters, twin.parameters) < 1e-2);
 
         DirectFit again(test::context(), room.problem, settings, fromReference(twin));
         const FitCellGradients expected = sgFitCellsReference(room.problem, twin, settings);
