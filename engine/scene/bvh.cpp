@@ -14,8 +14,9 @@ namespace strandlight {
 namespace {
 
 constexpr int kBins = 16;
-// Cost of a triangle test against a node: measured on lavapipe, three fetches against one.
-constexpr float kTriangleCost = 2.0f;
+// Cost of a triangle test against a node. Three fetches against one, but a smaller tree stays in
+// the cache: of 0.5, 1 and 2 the middle was fastest on lavapipe, by 5 %.
+constexpr float kTriangleCost = 1.0f;
 // Deeper than this, ranges are halved by count, so recursion stays bounded for any input.
 constexpr std::uint32_t kSahDepth = 48;
 // Products of two coordinates must stay finite in fp32.
