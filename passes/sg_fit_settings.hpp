@@ -46,8 +46,8 @@ struct FitSettings
         0.05f; // weight of a direction: 1 / (1 + s * radiance / mean); 0: plain squares
     // Laplacian over neighbouring texels of a chart: starts coarse, so that lobes find their places
     // together, and falls geometrically over the first 70 % of the steps. Against a constant 0.02
-    // that lowers the error between texels by 4 %, that of glossy reflections by 3 to 10 %.
-    float coarseSmoothness = 2.0f;
+    // that lowers the error between texels by 2 to 3 %.
+    float coarseSmoothness = 0.5f;
     float smoothness = 0.02f;     // 0: none at any time
     std::uint32_t cnnSteps = 600; // of the encoder, 512 texels each
     std::uint32_t seed = 1;
