@@ -27,7 +27,8 @@ add_counts() {
     if [[ "$line" =~ \|\ *([0-9]+)\ passed\ *\|\ *([0-9]+)\ failed\ *\|\ *([0-9]+)\ skipped ]]; then
         local p=${BASH_REMATCH[1]} f=${BASH_REMATCH[2]} s=${BASH_REMATCH[3]}
         if ((code != 0 && f == 0)); then
-            f=1 # it died after its summary: an error at exit
+            f=1 # it died after its summary
+            echo "$name ended with exit code $code after its summary" >>"$log"
         fi
     else
         local p=0 f=1 s=0

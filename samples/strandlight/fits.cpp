@@ -16,6 +16,7 @@ struct Options
     DeviceOptions device;
     SceneOptions scene;
     FitStudySettings settings;
+    std::vector<std::string> modes{"cnn", "direct", "cnn+refine"};
     std::string json;
 };
 
@@ -55,6 +56,9 @@ int run(Options& o)
 {
     requireOutput(o.json, {".json"});
     o.settings.fit.seed = o.settings.capture.seed;
+    o.settings.modes.clear();
+    for (const std::string& mode : o.modes)
+        o.settings.modes.push_back(fitModeFrom(mode));
     const Scene scene = openScene(o.scene);
     Context context = openDevice(o.device);
     const FitReport report = studyFits(context, scene, o.settings);
@@ -80,9 +84,16 @@ Command addFits(CLI::App& parent)
     addNumber(*app, "--lobes", s.fit.lobes, "Spherical gaussians per texel", 1u, 32u);
     addNumber(*app, "--steps", s.fit.steps, "Steps of the direct fit", 0u, 1000000u);
     addNumber(*app, "--seed", s.capture.seed, "Of the random numbers", 0u, 0xffffffffu);
+    app->add_option("--fit", o->modes, "Free-lobe modes, after the others")
+        ->type_name("MODES")
+        ->delimiter(',')
+        ->allow_extra_args(false) // the scene may follow
+        ->capture_default_str()
+        ->check(CLI::IsMember({"direct", "cnn", "cnn+refine"}));
     addJsonOption(*app, o->json);
     addDeviceOptions(*app, o->device);
     addExamples(*app, "  strandlight fits builtin:room --json fits.json\n"
+                      "  strandlight fits builtin:room --fit direct --lobes 12\n"
                       "Points between lie in the middle of four texels: light that no fit has "
                       "seen.");
     return {app, [o] { return run(*o); }};

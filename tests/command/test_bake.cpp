@@ -102,6 +102,20 @@ TEST_CASE("a bake interrupted during the fit resumes to the same bytes")
     checkResume({"--atlas", "24", "--lightfield", "8", "--spp", "1", "--steps", "2500"});
 }
 
+TEST_CASE("an interrupted picture is not written")
+{
+    const TemporaryFolder folder;
+    const std::string picture = (folder.path() / "box.png").string();
+    CommandOptions options;
+    options.interruptAfterMilliseconds = 500;
+    const CommandResult result = runCommand(
+        {"reference", "builtin:room", "-o", picture, "--size", "640x480", "--spp", "1000000"},
+        options);
+    CHECK(result.exitCode == 130);
+    CHECK(result.errors.ends_with("interrupted\n"));
+    CHECK(listFolder(folder.path()).empty());
+}
+
 TEST_CASE("a checkpoint of other settings is refused")
 {
     const TemporaryFolder folder;
