@@ -20,7 +20,7 @@ struct BakeSettings
     std::uint32_t lobes = 8;
     std::uint32_t environmentLobes = 8; // for the second set, when the scene has an environment
     std::uint32_t samplesPerDirection = 4;
-    std::uint32_t bounces = 12;
+    std::uint32_t bounces = 16;
     std::uint32_t steps = 600; // of the fit
     std::uint32_t seed = 1;
     FitMode fit = FitMode::Direct;

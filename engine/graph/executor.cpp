@@ -106,6 +106,7 @@ public:
     void recordPass(const PlannedPass& planned)
     {
         planned_ = &planned;
+        vulkan_.beginLabel(commands_, passName());
         recordBarriers(planned);
         const PassCommands& pass = graph_.commands[planned.pass];
         if (pass.kind == PassKind::Raster)
@@ -120,6 +121,7 @@ public:
         }
         if (pass.kind == PassKind::Raster)
             vkCmdEndRendering(commands_);
+        vulkan_.endLabel(commands_);
     }
 
 private:

@@ -39,6 +39,18 @@ bool hasLayer(const char* name)
     return false;
 }
 
+bool hasInstanceExtension(const char* name)
+{
+    std::uint32_t count = 0;
+    vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> list(count);
+    vkEnumerateInstanceExtensionProperties(nullptr, &count, list.data());
+    for (const VkExtensionProperties& extension : list)
+        if (std::strcmp(extension.extensionName, name) == 0)
+            return true;
+    return false;
+}
+
 void createInstance(VulkanState& state, bool validation)
 {
     if (volkInitialize() != VK_SUCCESS)
@@ -62,16 +74,18 @@ void createInstance(VulkanState& state, bool validation)
     VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT, &messages};
     features.enabledValidationFeatureCount = 1;
     features.pEnabledValidationFeatures = enabled;
+    // Also without validation: capture tools show our names and labels.
     const char* const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    state.debugUtils = hasInstanceExtension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
 
     VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
     info.pApplicationInfo = &application;
+    info.enabledExtensionCount = state.debugUtils ? 1 : 0;
+    info.ppEnabledExtensionNames = extensions;
     if (validation) {
         info.pNext = &features;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &kValidationLayer;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = extensions;
     }
     check(vkCreateInstance(&info, nullptr, &state.instance), "vkCreateInstance");
     volkLoadInstance(state.instance);
@@ -187,13 +201,28 @@ void VulkanState::submit(const std::function<void(VkCommandBuffer)>& record)
 
 void VulkanState::nameObject(VkObjectType type, std::uint64_t handle, const std::string& name) const
 {
-    if (!messenger)
+    if (!debugUtils)
         return;
     VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
     info.objectType = type;
     info.objectHandle = handle;
     info.pObjectName = name.c_str();
     vkSetDebugUtilsObjectNameEXT(device, &info);
+}
+
+void VulkanState::beginLabel(VkCommandBuffer commands, const std::string& name) const
+{
+    if (!debugUtils)
+        return;
+    VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
+    label.pLabelName = name.c_str();
+    vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+}
+
+void VulkanState::endLabel(VkCommandBuffer commands) const
+{
+    if (debugUtils)
+        vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
 void fullBarrier(VkCommandBuffer commands)

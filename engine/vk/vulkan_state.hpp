@@ -27,6 +27,7 @@ struct VulkanState
 
     VkInstance instance = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    bool debugUtils = false; // the extension is on
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
@@ -46,6 +47,9 @@ struct VulkanState
     // Records into a fresh command buffer, submits, waits. Throws VulkanError on failure, and when
     // the validation layers have spoken: a wrong program must not go on to write a file.
     void submit(const std::function<void(VkCommandBuffer)>& record);
+    // Names for validation messages and captures; nothing without the debug extension.
+    void beginLabel(VkCommandBuffer commands, const std::string& name) const;
+    void endLabel(VkCommandBuffer commands) const;
     void nameObject(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 };
 

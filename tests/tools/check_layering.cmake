@@ -1,5 +1,7 @@
 # Includes go downward only: samples, tests -> passes -> compute_nn -> engine/graph -> engine/vk -> engine/base;
 # engine/scene beside engine/graph; shaders/shared is a leaf. Run by ctest: cmake -DROOT=... -P check_layering.cmake
+cmake_minimum_required(VERSION 3.24)
+
 set(layer_engine_base "engine/base")
 set(layer_engine_vk "engine/base;engine/vk")
 set(layer_engine_graph "engine/base;engine/vk;engine/graph")
