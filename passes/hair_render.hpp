@@ -1,0 +1,71 @@
+// Strands to a picture by stochastic transparency in four samples a pixel, or by many jittered
+// frames of true-width strands as the truth.
+// Enderton, Sintorn, Shirley, Luebke. Stochastic Transparency. 2010
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/base/image.hpp"
+#include "engine/graph/render_graph.hpp"
+#include "engine/scene/camera.hpp"
+#include "engine/scene/hair.hpp"
+
+namespace strandlight {
+
+enum class HairMode : std::uint32_t
+{
+    Stochastic, // ribbons at least a pixel wide, alpha makes up for the width
+    Reference   // ribbons of true width; the samples of all frames resolve them
+};
+
+struct HairRenderSettings
+{
+    std::uint32_t width = 640;
+    std::uint32_t height = 384;
+    HairMode mode = HairMode::Stochastic;
+    std::uint32_t frames = 1; // averaged; four samples a pixel each, jittered when more than one
+    std::uint32_t frameIndex = 0; // of the first frame: another index is another noise
+    float alpha = 1.0f;           // of a strand that covers its pixel, in [0, 1]
+    std::uint32_t lod = 0;        // draw every lod-th strand lod times wider; 0: by projected width
+    bool shadows = true;          // lights' shadow maps of hair and opaque geometry
+    std::uint32_t shadowSize = 1024; // texels a side, four samples each
+    bool alphaCorrection = false;    // scale the noisy hair to its exact coverage (Enderton, 3.3)
+    bool exactCoverage = false;      // fill HairFrame::exactTransmittance
+
+    float roughness = 0.3f;               // longitudinal, in [0.05, 1] (Chiang 2016)
+    float tiltDegrees = 2.0f;             // of the cuticle scales
+    glm::vec3 ambient = glm::vec3(0.25f); // radiance from everywhere; an environment's mean
+    // Used when the opaque scene has none: towards the light, and its irradiance.
+    glm::vec3 keyDirection = glm::vec3(0.4f, 0.8f, 0.5f);
+    glm::vec3 keyIrradiance = glm::vec3(3.0f);
+
+    // What is behind the hair, linear [height, width]: a finished picture of the opaque scene, or,
+    // when null, the constant colour with the opaque triangles in plain diffuse shading before it.
+    const CpuImage* background = nullptr;
+    glm::vec3 backgroundColor = glm::vec3(0.05f);
+};
+
+struct HairFrame
+{
+    CpuImage radiance; // linear [height, width], hair over background
+    CpuImage hair;     // [height, width] premultiplied hair radiance; w: transmittance in [0, 1]
+    CpuImage exactTransmittance;      // [height, width] in x; empty unless asked for
+    std::vector<PassTiming> timings;  // GPU milliseconds, summed over frames by pass
+    std::vector<std::string> skipped; // what was not needed, and why
+    std::uint32_t lod = 1;            // that was used
+    std::uint32_t drawnStrands = 0;
+    std::uint32_t drawnSegments = 0;
+};
+
+// `opaque` may be null; its triangles hide hair and cast shadows, its punctual lights light it.
+// Without strands nothing is created on the device and the picture is the background.
+// Throws Error for broken hair (checkHair), a size that is empty or over 8192, a background of
+// another size, or settings out of the ranges above.
+HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opaque,
+                     const Camera& camera, const HairRenderSettings& settings = {});
+
+} // namespace strandlight
