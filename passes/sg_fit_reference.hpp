@@ -8,6 +8,7 @@
 
 #include "passes/sg_fit_cells.hpp"
 #include "passes/sg_fit_settings.hpp"
+#include "shaders/shared/sg_fit_types.h"
 
 namespace strandlight {
 
@@ -17,6 +18,23 @@ struct FitStateReference
     std::vector<double> parameters;    // [lobe * 2 + half, texel, 4]
     std::vector<double> firstMoments;  // the same
     std::vector<double> secondMoments; // [lobe, texel, 4]
+};
+
+// Parameters addressed by lobe, component and texel.
+struct LobeBlock
+{
+    const std::vector<double>& values;
+    std::uint32_t texelCount;
+
+    double at(std::uint32_t lobe, std::uint32_t component, std::uint32_t texel) const
+    {
+        return values[gpu::sgFitIndex(lobe, component, texel, texelCount)];
+    }
+    glm::dvec3 at3(std::uint32_t lobe, std::uint32_t component, std::uint32_t texel) const
+    {
+        return {at(lobe, component, texel), at(lobe, component + 1, texel),
+                at(lobe, component + 2, texel)};
+    }
 };
 
 FitStateReference toReference(const FitState& state);

@@ -1,5 +1,4 @@
-// How lobes are fitted, and what a fit says about itself. Defaults are the measured best; see
-// passes/README.md.
+// How lobes are fitted, and what a fit says about itself. Defaults are the measured best.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ std::vector<SgLobe> fibonacciLobes(std::uint32_t count)
     const std::uint32_t broad = count > 1 ? 1 : 0;
     std::vector<SgLobe> lobes(count);
     if (broad == 1) {
-        lobes[0].logSharpness = std::log(0.05f);
+        lobes[0].logSharpness = std::log(0.03f);
         lobes[0].amplitude = glm::vec3(0.75f);
     }
     for (std::uint32_t k = broad; k < count; ++k) {
