@@ -31,7 +31,15 @@ struct HairStrands
 void checkHair(const HairStrands& hair);
 
 // `count` strands spread evenly over the order of the file; all of them when there are fewer.
-HairStrands everyKthStrand(const HairStrands& hair, std::uint32_t count);
+HairStrands selectStrands(const HairStrands& hair, std::uint32_t count);
+
+// Factor on the radius at t in [0, 1] from root to tip: 1, then falling to a tenth over the last
+// quarter.
+float tipTaper(float t);
+
+// Fills `colors`: `color`, brighter or darker and warmer or cooler by up to `variation` per strand,
+// darker at the root and brighter at the tip by half of it; clamped to [0, 1].
+void paintHair(HairStrands& hair, glm::vec3 color, float variation, std::uint32_t seed);
 
 // Frames the bounds from in front (+z) and a little from the side and above.
 Camera hairCamera(const HairStrands& hair);
