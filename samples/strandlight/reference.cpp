@@ -88,17 +88,9 @@ Command addReference(CLI::App& parent)
     const auto o = std::make_shared<Options>();
     addSceneOptions(*app, o->scene);
     addViewOptions(*app, o->view);
-    app->add_option("--spp", o->settings.samples, "Paths per pixel")
-        ->type_name("N")
-        ->capture_default_str()
-        ->check(CLI::Range(1u, 1u << 20));
-    app->add_option("--bounces", o->settings.bounces, "Reflections on a path")
-        ->type_name("N")
-        ->capture_default_str()
-        ->check(CLI::Range(0u, 64u));
-    app->add_option("--seed", o->settings.seed, "Of the random numbers")
-        ->type_name("N")
-        ->capture_default_str();
+    addNumber(*app, "--spp", o->settings.samples, "Paths per pixel", 1u, 1u << 20);
+    addNumber(*app, "--bounces", o->settings.bounces, "Reflections on a path", 0u, 64u);
+    addNumber(*app, "--seed", o->settings.seed, "Of the random numbers", 0u, 0xffffffffu);
     addJsonOption(*app, o->json);
     addDeviceOptions(*app, o->device);
     addExamples(*app, "  strandlight reference builtin:room -o truth.exr -o truth.png --spp 256\n"
