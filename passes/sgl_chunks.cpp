@@ -14,7 +14,7 @@ constexpr std::uint64_t kTexelBytes = 20;
 
 float readFinite(ByteReader& reader, const char* what)
 {
-    const auto value = reader.read<float>();
+    const auto value = reader.value<float>();
     if (!std::isfinite(value))
         reader.fail(std::string(what) + " is not finite");
     return value;
@@ -23,9 +23,9 @@ float readFinite(ByteReader& reader, const char* what)
 void expectBytes(const ByteReader& reader, std::uint64_t count, std::uint64_t each)
 {
     // Divided, not multiplied: a broken count must not overflow.
-    if (reader.remaining() % each != 0 || reader.remaining() / each != count)
-        reader.fail("has " + std::to_string(reader.remaining()) + " bytes for " +
-                    std::to_string(count) + " entries of " + std::to_string(each));
+    if (reader.left() % each != 0 || reader.left() / each != count)
+        reader.fail("has " + std::to_string(reader.left()) + " bytes for " + std::to_string(count) +
+                    " entries of " + std::to_string(each));
 }
 
 } // namespace
@@ -33,31 +33,31 @@ void expectBytes(const ByteReader& reader, std::uint64_t count, std::uint64_t ea
 std::vector<std::uint8_t> encodeInfo(const BakeInfo& info)
 {
     ByteWriter writer;
-    writer.writeString(info.scene.substr(0, kLongestText));
-    writer.writeString(info.fitMode.substr(0, kLongestText));
-    writer.write(info.geometryHash);
-    writer.write(info.environmentHash);
-    writer.write(info.lightfieldSize);
-    writer.write(info.samplesPerDirection);
-    writer.write(info.bounces);
-    writer.write(info.steps);
-    writer.write(info.seed);
-    writer.write(info.rmse);
+    writer.text(info.scene.substr(0, kLongestText));
+    writer.text(info.fitMode.substr(0, kLongestText));
+    writer.value(info.geometryHash);
+    writer.value(info.environmentHash);
+    writer.value(info.lightfieldSize);
+    writer.value(info.samplesPerDirection);
+    writer.value(info.bounces);
+    writer.value(info.steps);
+    writer.value(info.seed);
+    writer.value(info.rmse);
     return writer.take();
 }
 
 BakeInfo decodeInfo(ByteReader reader)
 {
     BakeInfo info;
-    info.scene = reader.readString(kLongestText);
-    info.fitMode = reader.readString(kLongestText);
-    info.geometryHash = reader.read<std::uint64_t>();
-    info.environmentHash = reader.read<std::uint64_t>();
-    info.lightfieldSize = reader.read<std::uint32_t>();
-    info.samplesPerDirection = reader.read<std::uint32_t>();
-    info.bounces = reader.read<std::uint32_t>();
-    info.steps = reader.read<std::uint32_t>();
-    info.seed = reader.read<std::uint32_t>();
+    info.scene = reader.text(kLongestText);
+    info.fitMode = reader.text(kLongestText);
+    info.geometryHash = reader.value<std::uint64_t>();
+    info.environmentHash = reader.value<std::uint64_t>();
+    info.lightfieldSize = reader.value<std::uint32_t>();
+    info.samplesPerDirection = reader.value<std::uint32_t>();
+    info.bounces = reader.value<std::uint32_t>();
+    info.steps = reader.value<std::uint32_t>();
+    info.seed = reader.value<std::uint32_t>();
     info.rmse = readFinite(reader, "rmse");
     reader.finish();
     return info;
@@ -66,25 +66,25 @@ BakeInfo decodeInfo(ByteReader reader)
 std::vector<std::uint8_t> encodeAtlasSizes(const Atlas& atlas)
 {
     ByteWriter writer;
-    writer.write(atlas.resolution);
-    writer.write(atlas.chartCount);
-    writer.write(static_cast<std::uint32_t>(atlas.usedTexCoord1));
-    writer.write(atlas.texelsPerMetre);
-    writer.write(static_cast<std::uint64_t>(atlas.corners.size()));
-    writer.write(static_cast<std::uint64_t>(atlas.texels.size()));
+    writer.value(atlas.resolution);
+    writer.value(atlas.chartCount);
+    writer.value(static_cast<std::uint32_t>(atlas.usedTexCoord1));
+    writer.value(atlas.texelsPerMetre);
+    writer.value(static_cast<std::uint64_t>(atlas.corners.size()));
+    writer.value(static_cast<std::uint64_t>(atlas.texels.size()));
     return writer.take();
 }
 
 Atlas decodeAtlasSizes(ByteReader reader, std::uint64_t& cornerCount, std::uint64_t& texelCount)
 {
     Atlas atlas;
-    atlas.resolution = reader.read<std::uint32_t>();
-    atlas.chartCount = reader.read<std::uint32_t>();
-    const auto used = reader.read<std::uint32_t>();
+    atlas.resolution = reader.value<std::uint32_t>();
+    atlas.chartCount = reader.value<std::uint32_t>();
+    const auto used = reader.value<std::uint32_t>();
     atlas.usedTexCoord1 = used != 0;
     atlas.texelsPerMetre = readFinite(reader, "texels per metre");
-    cornerCount = reader.read<std::uint64_t>();
-    texelCount = reader.read<std::uint64_t>();
+    cornerCount = reader.value<std::uint64_t>();
+    texelCount = reader.value<std::uint64_t>();
     reader.finish();
     if (atlas.resolution == 0 || atlas.resolution > kMaximumResolution || used > 1 ||
         cornerCount % 3 != 0 || texelCount > std::uint64_t(atlas.resolution) * atlas.resolution)
@@ -100,7 +100,7 @@ std::vector<std::uint8_t> encodeCorners(const Atlas& atlas)
     for (const AtlasCorner& corner : atlas.corners)
         for (const float value :
              {corner.uv.x, corner.uv.y, corner.tangent.x, corner.tangent.y, corner.tangent.z})
-            writer.write(value);
+            writer.value(value);
     return writer.take();
 }
 
@@ -123,12 +123,12 @@ std::vector<std::uint8_t> encodeTexels(const Atlas& atlas)
 {
     ByteWriter writer;
     for (const AtlasTexel& texel : atlas.texels) {
-        writer.write(static_cast<std::uint16_t>(texel.x));
-        writer.write(static_cast<std::uint16_t>(texel.y));
-        writer.write(texel.triangle);
-        writer.write(texel.barycentric.x);
-        writer.write(texel.barycentric.y);
-        writer.write(texel.chart);
+        writer.value(static_cast<std::uint16_t>(texel.x));
+        writer.value(static_cast<std::uint16_t>(texel.y));
+        writer.value(texel.triangle);
+        writer.value(texel.barycentric.x);
+        writer.value(texel.barycentric.y);
+        writer.value(texel.chart);
     }
     return writer.take();
 }
@@ -140,12 +140,12 @@ void decodeTexels(ByteReader reader, std::uint64_t count, Atlas& atlas)
     std::int64_t last = -1;
     atlas.texels.resize(count);
     for (AtlasTexel& texel : atlas.texels) {
-        texel.x = reader.read<std::uint16_t>();
-        texel.y = reader.read<std::uint16_t>();
-        texel.triangle = reader.read<std::uint32_t>();
+        texel.x = reader.value<std::uint16_t>();
+        texel.y = reader.value<std::uint16_t>();
+        texel.triangle = reader.value<std::uint32_t>();
         texel.barycentric.x = readFinite(reader, "a texel's weight");
         texel.barycentric.y = readFinite(reader, "a texel's weight");
-        texel.chart = reader.read<std::uint32_t>();
+        texel.chart = reader.value<std::uint32_t>();
         const std::int64_t index = std::int64_t(texel.y) * atlas.resolution + texel.x;
         const glm::vec2 w = texel.barycentric;
         if (texel.x >= atlas.resolution || texel.y >= atlas.resolution || index <= last ||
@@ -163,10 +163,10 @@ std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
     const SglLobeCoding coding = chooseCoding(field, storage);
     const std::size_t size = sglBytesPerLobe(storage);
     ByteWriter writer;
-    writer.write(field.lobeCount);
-    writer.write(coding.amplitudeScale);
-    writer.write(coding.logSharpnessLow);
-    writer.write(coding.logSharpnessHigh);
+    writer.value(field.lobeCount);
+    writer.value(coding.amplitudeScale);
+    writer.value(coding.logSharpnessLow);
+    writer.value(coding.logSharpnessHigh);
     const std::span<std::uint8_t> out = writer.extend(field.lobes.size() * size);
     for (std::size_t i = 0; i < field.lobes.size(); ++i)
         clamped += encodeLobe(field.lobes[i], coding, out.subspan(i * size, size));
@@ -176,7 +176,7 @@ std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
 SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCount)
 {
     SgField field;
-    field.lobeCount = reader.read<std::uint32_t>();
+    field.lobeCount = reader.value<std::uint32_t>();
     if (field.lobeCount == 0 || field.lobeCount > kMaximumLobes)
         reader.fail("claims " + std::to_string(field.lobeCount) + " lobes per texel");
     SglLobeCoding coding{.storage = storage};

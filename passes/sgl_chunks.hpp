@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/byte_stream.hpp"
 #include "passes/sg_field.hpp"
-#include "passes/sgl_bytes.hpp"
 #include "passes/sgl_lobe.hpp"
 
 namespace strandlight {

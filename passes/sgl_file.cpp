@@ -58,18 +58,18 @@ std::vector<std::uint8_t> assembleFile(const std::vector<std::vector<std::uint8_
         total += chunk.size();
     ByteWriter writer;
     for (const std::uint8_t byte : kMagic)
-        writer.write(byte);
-    writer.write(kSglVersion);
-    writer.write(storage);
-    writer.write(total);
-    writer.write(static_cast<std::uint32_t>(chunks.size()));
-    writer.write(std::uint32_t(0));
+        writer.value(byte);
+    writer.value(kSglVersion);
+    writer.value(storage);
+    writer.value(total);
+    writer.value(static_cast<std::uint32_t>(chunks.size()));
+    writer.value(std::uint32_t(0));
     for (std::size_t i = 0; i < chunks.size(); ++i) {
         for (const char c : kTags[i])
-            writer.write(c);
-        writer.write(crc32(chunks[i]));
-        writer.write(offset);
-        writer.write(static_cast<std::uint64_t>(chunks[i].size()));
+            writer.value(c);
+        writer.value(crc32(chunks[i]));
+        writer.value(offset);
+        writer.value(static_cast<std::uint64_t>(chunks[i].size()));
         offset += chunks[i].size();
     }
     std::vector<std::uint8_t> bytes = writer.take();
@@ -84,19 +84,19 @@ std::vector<std::uint8_t> assembleFile(const std::vector<std::vector<std::uint8_
 std::size_t readHeader(ByteReader& reader, std::span<const std::uint8_t> bytes, SglStorage& storage)
 {
     for (const std::uint8_t byte : kMagic)
-        if (reader.read<std::uint8_t>() != byte)
+        if (reader.value<std::uint8_t>() != byte)
             reader.fail("is not an .sgl file (wrong magic number)");
-    const auto version = reader.read<std::uint32_t>();
+    const auto version = reader.value<std::uint32_t>();
     if (version != kSglVersion)
         reader.fail("has version " + std::to_string(version) + ", this program reads version " +
                     std::to_string(kSglVersion) + ": bake again");
-    const auto storageCode = reader.read<std::uint32_t>();
-    const auto total = reader.read<std::uint64_t>();
+    const auto storageCode = reader.value<std::uint32_t>();
+    const auto total = reader.value<std::uint64_t>();
     if (total != bytes.size())
         reader.fail("should have " + std::to_string(total) + " bytes and has " +
                     std::to_string(bytes.size()));
-    const auto count = reader.read<std::uint32_t>();
-    const auto crc = reader.read<std::uint32_t>();
+    const auto count = reader.value<std::uint32_t>();
+    const auto crc = reader.value<std::uint32_t>();
     if (count < kFewestChunks || count > kTags.size())
         reader.fail("claims " + std::to_string(count) + " chunks");
     reader.take(kEntryBytes * count);
@@ -119,9 +119,9 @@ std::vector<ByteReader> readChunks(std::span<const std::uint8_t> bytes, const st
     std::vector<ByteReader> chunks;
     for (std::size_t i = 0; i < count; ++i) {
         const auto tag = table.take(4);
-        const auto crc = table.read<std::uint32_t>();
-        const auto offset = table.read<std::uint64_t>();
-        const auto size = table.read<std::uint64_t>();
+        const auto crc = table.value<std::uint32_t>();
+        const auto offset = table.value<std::uint64_t>();
+        const auto size = table.value<std::uint64_t>();
         const std::string place = "chunk " + std::string(kTags[i]);
         if (!std::equal(tag.begin(), tag.end(), kTags[i].begin()) || offset != expected ||
             size > bytes.size() - offset)

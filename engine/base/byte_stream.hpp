@@ -7,9 +7,8 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
-
-#include "engine/base/error.hpp"
 
 namespace strandlight {
 
@@ -31,17 +30,18 @@ public:
         value(std::uint64_t(values.size()));
         append(values.data(), values.size() * sizeof(T));
     }
-    void text(const std::string& s) { array(std::vector<char>(s.begin(), s.end())); }
+    void text(const std::string& s); // u32 count, then the characters
+    // Room for `count` bytes at the end; valid until the next call.
+    std::span<std::uint8_t> extend(std::size_t count)
+    {
+        bytes_.resize(bytes_.size() + count);
+        return std::span(bytes_).last(count);
+    }
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+    std::vector<std::uint8_t> take() { return std::move(bytes_); }
 
 private:
-    void append(const void* from, std::size_t count)
-    {
-        const std::size_t at = bytes_.size();
-        bytes_.resize(at + count);
-        if (count)
-            std::memcpy(bytes_.data() + at, from, count);
-    }
+    void append(const void* from, std::size_t count);
 
     std::vector<std::uint8_t> bytes_;
 };
@@ -49,9 +49,10 @@ private:
 class ByteReader
 {
 public:
-    // `path` names the file in errors.
-    ByteReader(std::span<const std::uint8_t> bytes, std::string path)
-        : bytes_(bytes), path_(std::move(path))
+    // For errors: `path` is the file, `place` the part of it that these bytes are ("": the byte's
+    // position is named instead).
+    ByteReader(std::span<const std::uint8_t> bytes, std::string path, std::string place = {})
+        : bytes_(bytes), path_(std::move(path)), place_(std::move(place))
     {
     }
 
@@ -59,7 +60,7 @@ public:
     {
         static_assert(std::is_trivially_copyable_v<T>);
         T v;
-        std::memcpy(&v, take(sizeof(T)), sizeof(T));
+        std::memcpy(&v, take(sizeof(T)).data(), sizeof(T));
         return v;
     }
     template <class T> std::vector<T> array()
@@ -70,35 +71,21 @@ public:
             fail(std::to_string(count) + " elements are claimed, " + std::to_string(left()) +
                  " bytes are left");
         std::vector<T> values(count);
-        if (count)
-            std::memcpy(values.data(), take(count * sizeof(T)), count * sizeof(T));
+        if (count != 0)
+            std::memcpy(values.data(), take(count * sizeof(T)).data(), count * sizeof(T));
         return values;
     }
-    std::string text()
-    {
-        const std::vector<char> s = array<char>();
-        return {s.begin(), s.end()};
-    }
-    std::size_t left() const { return bytes_.size() - at_; }
-    [[noreturn]] void fail(const std::string& reason) const
-    {
-        throw FileError(path_, "byte " + std::to_string(at_), reason);
-    }
+    std::string text(std::uint32_t longest);
+    std::span<const std::uint8_t> take(std::uint64_t count);
+    std::uint64_t left() const { return bytes_.size() - at_; }
+    void finish() const; // fails when anything follows
+    [[noreturn]] void fail(const std::string& reason) const;
 
 private:
-    const std::uint8_t* take(std::size_t count)
-    {
-        if (count > left())
-            fail("the file ends too early: " + std::to_string(count) + " bytes are needed, " +
-                 std::to_string(left()) + " are left");
-        const std::uint8_t* from = bytes_.data() + at_;
-        at_ += count;
-        return from;
-    }
-
     std::span<const std::uint8_t> bytes_;
     std::string path_;
-    std::size_t at_ = 0;
+    std::string place_;
+    std::uint64_t at_ = 0;
 };
 
 } // namespace strandlight
