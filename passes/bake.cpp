@@ -1,14 +1,13 @@
 #include "passes/bake.hpp"
 
 #include <chrono>
-#include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/gpu_scene.hpp"
 #include "passes/bake_checkpoint.hpp"
+#include "passes/bake_identity.hpp"
 #include "passes/fit_report.hpp"
 #include "passes/light_field_baselines.hpp"
 #include "passes/lightfield_capture.hpp"
@@ -27,47 +26,6 @@ constexpr std::uint64_t kStoredLobeBytes = 14; // fp16: oct axis 4, ln sharpness
 double secondsSince(Clock::time_point start)
 {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// FNV-1a over raw bytes: names an input, protects nothing.
-class Hash
-{
-public:
-    void bytes(const void* data, std::size_t count)
-    {
-        const auto* raw = static_cast<const unsigned char*>(data);
-        for (std::size_t i = 0; i < count; ++i)
-            value_ = (value_ ^ raw[i]) * 0x100000001B3ull;
-    }
-    template <class T> void value(const T& v) { bytes(&v, sizeof(T)); }
-    std::uint64_t result() const { return value_; }
-
-private:
-    std::uint64_t value_ = 0xCBF29CE484222325ull;
-};
-
-// Everything besides the geometry that changes what a bake computes.
-std::uint64_t hashSettings(const Scene& scene, const BakeSettings& s)
-{
-    Hash hash;
-    hash.value(hashGeometry(scene));
-    hash.value(hashEnvironment(scene));
-    for (const Material& material : scene.materials)
-        for (const float v :
-             {material.baseColor.x, material.baseColor.y, material.baseColor.z, material.metallic,
-              material.roughness, material.specular, material.emissive.x, material.emissive.y,
-              material.emissive.z, material.alphaCutoff, material.normalScale})
-            hash.value(v);
-    for (const Texture& texture : scene.textures)
-        hash.bytes(texture.rgba.data(), texture.rgba.size());
-    for (const PunctualLight& light : scene.lights)
-        for (const glm::vec3& v : {light.position, light.direction, light.intensity})
-            hash.value(v);
-    for (const std::uint32_t v :
-         {s.atlasResolution, s.lightfieldSize, s.lobes, s.environmentLobes, s.samplesPerDirection,
-          s.bounces, s.steps, s.seed, std::uint32_t(s.fit)})
-        hash.value(v);
-    return hash.result();
 }
 
 FitSettings fitSettings(const BakeSettings& settings, LightSet light)
@@ -181,7 +139,7 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
     numbers.emptyTexels = settings.atlasResolution * settings.atlasResolution - numbers.texels;
 
     // Capture
-    Saver saver(settings, hashSettings(scene, settings));
+    Saver saver(settings, hashBake(scene, settings));
     start = Clock::now();
     GpuScene device = uploadScene(context, scene);
     CpuLightfield images;
@@ -235,26 +193,6 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
     if (statistics)
         *statistics = numbers;
     return bake;
-}
-
-std::uint64_t hashGeometry(const Scene& scene)
-{
-    Hash hash;
-    for (const glm::uvec3& triangle : scene.triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            hash.value(scene.vertices[triangle[corner]].position);
-    return hash.result();
-}
-
-std::uint64_t hashEnvironment(const Scene& scene)
-{
-    Hash hash;
-    if (scene.environment) {
-        const CpuImage& image = scene.environment->latLong;
-        hash.value(image.width);
-        hash.bytes(image.pixels.data(), image.pixels.size() * sizeof(glm::vec4));
-    }
-    return scene.environment ? hash.result() : 0;
 }
 
 } // namespace strandlight

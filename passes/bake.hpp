@@ -49,8 +49,4 @@ struct BakeStatistics
 SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& settings,
                  BakeStatistics* statistics = nullptr);
 
-// Of triangle positions, in order: ties a bake to its scene.
-std::uint64_t hashGeometry(const Scene& scene);
-std::uint64_t hashEnvironment(const Scene& scene);
-
 } // namespace strandlight

@@ -7,7 +7,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/gpu_scene.hpp"
-#include "passes/bake.hpp"
+#include "passes/bake_identity.hpp"
 #include "passes/render_frame.hpp"
 #include "passes/sgl_file.hpp"
 #include "samples/strandlight/commands.hpp"
