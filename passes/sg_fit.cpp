@@ -10,6 +10,7 @@
 #include "passes/fit_report.hpp"
 #include "passes/sg_fit_cnn.hpp"
 #include "passes/sg_fit_direct.hpp"
+#include "passes/sg_fit_irradiance.hpp"
 #include "shaders/shared/sg_fit_types.h"
 
 namespace strandlight {
@@ -139,6 +140,7 @@ SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings&
                 field = runDirect(context, problem, refine,
                                   resume ? *resume : startFit(problem, field), checkpoint, numbers);
         }
+        numbers.heldIrradiance = matchIrradiance(problem, field);
         countClamps(problem, field, numbers);
     }
     numbers.seconds = secondsSince(begin);

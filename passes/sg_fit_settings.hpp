@@ -61,6 +61,7 @@ struct FitStatistics
     std::uint64_t sharpnessAtLimit = 0; // lobes that end at a limit of ln sharpness
     std::uint64_t amplitudesAtZero = 0; // lobes that end black
     std::uint64_t raisedScales = 0;     // texels so dark that the floor of the mean radiance holds
+    std::uint64_t heldIrradiance = 0; // channels whose irradiance is off by more than a factor of 2
     std::uint64_t texelsWithoutImage = 0; // inside geometry: filled by their neighbours
 };
 

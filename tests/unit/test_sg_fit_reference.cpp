@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "passes/light_field_baselines.hpp"
+#include "passes/sg_fit_irradiance.hpp"
 #include "passes/sg_fit_reference.hpp"
 #include "shaders/shared/rgb9e5.h"
 #include "shaders/shared/sg.h"
@@ -232,6 +233,25 @@ TEST_CASE("a texel inside geometry is filled by its neighbours")
     CHECK(allFinite(first.field));
     for (std::size_t i = 0; i < first.field.lobes.size(); ++i)
         CHECK(first.field.lobes[i].amplitude == second.field.lobes[i].amplitude);
+}
+
+TEST_CASE("matched irradiance is the captured one")
+{
+    SyntheticRoom room;
+    room.grid = 5;
+    FitSettings settings;
+    settings.steps = 100;
+    Fitted fitted = fit(test::roomLightfield(room), test::gridAtlas(5), settings);
+    CHECK(matchIrradiance(fitted.problem, fitted.field) == 0);
+    const FitReport report = compareFits(
+        fitted.problem, {}, {freeSgModel(fitted.problem, fitted.field, "matched", 0.0)});
+    CHECK(report.rows[0].texelIrradiance < 1e-5); // fp32 sums of 256 directions
+    CHECK(allFinite(fitted.field));
+
+    // A factor beyond 2 is held, and counted.
+    for (SgLobe& lobe : fitted.field.lobes)
+        lobe.amplitude *= 4.0f;
+    CHECK(matchIrradiance(fitted.problem, fitted.field) == 3 * fitted.problem.texelCount());
 }
 
 TEST_CASE("light between texels: the joint fit beats texels apart and fixed directions")
