@@ -67,8 +67,7 @@ glm::vec3 rootOf(std::uint32_t strand, std::uint32_t use, std::uint32_t seed)
 // head.
 glm::vec3 stayOutside(glm::vec3 from, glm::vec3 wanted, float step)
 {
-    const float allowed = std::min(headLevel(from), 1.0f) * kOutside;
-    if (lowestHeadLevel(from, from + step * wanted) >= allowed)
+    if (lowestHeadLevel(from, from + step * wanted) >= kOutside)
         return wanted;
     const glm::vec3 normal = headNormal(from);
     const glm::vec3 tangent = sideOf(normal, wanted);
@@ -77,7 +76,7 @@ glm::vec3 stayOutside(glm::vec3 from, glm::vec3 wanted, float step)
     for (int i = 0; i < 6; ++i) {
         const float middle = 0.5f * (good + bad);
         const glm::vec3 d = glm::normalize(glm::mix(wanted, tangent, middle));
-        (lowestHeadLevel(from, from + step * d) >= allowed ? good : bad) = middle;
+        (lowestHeadLevel(from, from + step * d) >= kOutside ? good : bad) = middle;
     }
     return good < 1.0f ? glm::normalize(glm::mix(wanted, tangent, good)) : tangent;
 }

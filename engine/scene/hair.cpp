@@ -139,13 +139,13 @@ void paintHair(HairStrands& hair, glm::vec3 color, float variation, std::uint32_
 
 Camera hairCamera(const HairStrands& hair)
 {
-    const glm::vec3 low = hair.boundsMin();
-    const glm::vec3 high = hair.boundsMax();
-    // A groom of one point would leave the camera inside of itself.
-    const float radius = std::max(0.5f * glm::length(high - low), 1e-3f);
+    const glm::vec3 centre = 0.5f * (hair.boundsMin() + hair.boundsMax());
+    float radius = 1e-3f; // a groom of one place must not hold the camera
+    for (const glm::vec3& p : hair.points)
+        radius = std::max(radius, glm::length(p - centre));
     Camera camera;
     camera.verticalFovDegrees = kCameraFovDegrees;
-    camera.target = 0.5f * (low + high);
+    camera.target = centre;
     const float distance =
         kCameraMargin * radius / std::sin(0.5f * glm::radians(kCameraFovDegrees));
     camera.eye = camera.target + distance * glm::normalize(glm::vec3(0.45f, 0.2f, 1.0f));

@@ -247,7 +247,12 @@ HairStrands readHair(const Source& source)
 
 HairStrands loadHair(const std::filesystem::path& path, const HairDefaults& defaults)
 {
-    const std::vector<std::uint8_t> bytes = readFile(path);
+    return decodeHair(readFile(path), path, defaults);
+}
+
+HairStrands decodeHair(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
+                       const HairDefaults& defaults)
+{
     const Source source{path.string(), bytes, defaults};
     HairStrands hair;
     if (bytes.size() >= 4 && std::memcmp(bytes.data(), "HAIR", 4) == 0)

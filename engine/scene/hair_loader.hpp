@@ -1,7 +1,9 @@
 // Hair from files: TressFX .tfx and Cem Yuksel's .hair.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "engine/scene/hair.hpp"
 
@@ -20,5 +22,9 @@ struct HairDefaults
 // coverage comes from the width. Strands are tapered unless the file gives a thickness per point.
 // Throws FileError (path, place, reason) when the file is broken.
 HairStrands loadHair(const std::filesystem::path& path, const HairDefaults& defaults = {});
+
+// The same for the bytes of a file; `path` gives the suffix, the name and the place of errors.
+HairStrands decodeHair(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
+                       const HairDefaults& defaults = {});
 
 } // namespace strandlight
