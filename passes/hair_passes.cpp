@@ -1,0 +1,200 @@
+#include "passes/hair_passes.hpp"
+
+#include <string>
+
+#include "kernels.gen.hpp"
+
+namespace strandlight {
+namespace {
+
+static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 96 &&
+              sizeof(gpu::HairShadePush) == 52 && sizeof(gpu::HairLight) == 120);
+
+gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view)
+{
+    gpu::HairStrandPush push{};
+    push.viewProjection = view.viewProjection;
+    push.size = glm::vec2(view.width, view.height);
+    push.jitter = view.jitter;
+    // Clip y per metre: the length of the second row's linear part.
+    const glm::mat4& m = view.viewProjection;
+    push.pixelsPerUnit =
+        0.5f * float(view.height) * glm::length(glm::vec3(m[0][1], m[1][1], m[2][1]));
+    push.widthScale = buffers.widthScale;
+    push.minimumWidth = view.trueWidth ? 0.0f : 1.0f;
+    push.alpha = view.alpha;
+    push.frame = view.frame;
+    return push;
+}
+
+gpu::HairOpaquePush opaquePush(const HairView& view)
+{
+    gpu::HairOpaquePush push{};
+    push.viewProjection = view.viewProjection;
+    push.size = glm::vec2(view.width, view.height);
+    push.jitter = view.jitter;
+    return push;
+}
+
+void drawOpaque(RenderGraph& graph, PassBuilder& pass, HairBuffers& buffers,
+                const gpu::HairOpaquePush& push, const KernelBlob& fragment, Blend blend)
+{
+    if (buffers.triangleCount == 0)
+        return;
+    const BufferId surface = pass.read(graph.importBuffer(buffers.surface));
+    const BufferId lights = pass.read(graph.importBuffer(buffers.lights));
+    const RasterDesc raster{
+        .vertex = &kernels::hair_opaque_vert, .fragment = &fragment, .blend = blend};
+    pass.draw(raster, buffers.triangleCount * 3, 1, push, {surface, lights});
+}
+
+// What every strand draw reads.
+struct StrandIds
+{
+    BufferId points, tangents, segments;
+};
+
+StrandIds readStrands(RenderGraph& graph, PassBuilder& pass, HairBuffers& buffers)
+{
+    return {pass.read(graph.importBuffer(buffers.points)),
+            pass.read(graph.importBuffer(buffers.tangents)),
+            pass.read(graph.importBuffer(buffers.segments))};
+}
+
+ImageId addShadowPass(RenderGraph& graph, HairBuffers& buffers, const gpu::HairLight& light,
+                      std::uint32_t index, const HairRenderSettings& settings)
+{
+    // One pass clears, draws what hides and then what hides at random.
+    PassBuilder pass = graph.addRasterPass("hair shadow " + std::to_string(index));
+    const std::uint32_t size = settings.shadowSize;
+    const ImageId map =
+        pass.depth(graph.createImage("hair shadow map", {size, size, 1, Format::Depth32F, 4}));
+    HairView view;
+    view.viewProjection = light.shadowMatrix;
+    view.width = view.height = size;
+    view.alpha = settings.alpha;
+    view.frame = settings.frameIndex + 0x40000000u + index; // masks unlike the camera's
+    drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_depth_frag, Blend::None);
+    const StrandIds strands = readStrands(graph, pass, buffers);
+    const RasterDesc raster{.vertex = &kernels::hair_silhouette_vert,
+                            .fragment = &kernels::hair_shadow_frag};
+    pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
+              {strands.points, strands.tangents, strands.segments});
+    return map;
+}
+
+} // namespace
+
+BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
+                              std::span<const gpu::HairLight> lights,
+                              const std::vector<bool>& shadowed, const HairView& view,
+                              const HairRenderSettings& settings)
+{
+    BufferId shaded = graph.importBuffer(buffers.shaded);
+    gpu::HairShadePush push{};
+    push.eye = view.eye;
+    push.roughness = settings.roughness;
+    push.ambient = settings.ambient;
+    push.tilt = glm::radians(settings.tiltDegrees);
+    push.pointCount = buffers.pointCount;
+    push.lightCount = std::uint32_t(lights.size());
+    push.shadowSize = settings.shadowSize;
+    for (std::uint32_t i = 0; i < push.lightCount; ++i) {
+        push.light = i;
+        push.first = i == 0 ? 1 : 0;
+        ImageId map;
+        if (shadowed[i])
+            map = addShadowPass(graph, buffers, lights[i], i, settings);
+        PassBuilder pass = graph.addComputePass("hair shading " + std::to_string(i));
+        const BufferId points = pass.read(graph.importBuffer(buffers.points));
+        const BufferId tangents = pass.read(graph.importBuffer(buffers.tangents));
+        const BufferId colors = pass.read(graph.importBuffer(buffers.colors));
+        const BufferId table = pass.read(graph.importBuffer(buffers.lights));
+        shaded = pass.write(shaded);
+        const glm::uvec3 threads(buffers.pointCount, 1, 1);
+        if (!shadowed[i]) {
+            pass.dispatch(kernels::hair_shade, threads, push,
+                          {points, tangents, colors, shaded, table});
+            continue;
+        }
+        pass.sample(map);
+        pass.dispatch(kernels::hair_shade_shadowed, threads, push,
+                      {points, tangents, colors, shaded, table, Binding(map, Filter::Nearest)});
+    }
+    return shaded;
+}
+
+HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
+                                 const HairView& view, const HairRenderSettings& settings,
+                                 std::uint32_t lightCount, bool plainSurfaces, bool wantFeatures)
+{
+    const ImageDesc desc{view.width, view.height, 1, Format::RGBA16F, 4};
+    HairSampleIds ids;
+    {
+        PassBuilder pass = graph.addRasterPass("hair occluders");
+        const glm::vec3 clear = plainSurfaces ? settings.backgroundColor : glm::vec3(0.0f);
+        if (plainSurfaces)
+            ids.color = pass.color(graph.createImage("hair color", desc), {true, {clear, 0.0f}});
+        ids.depth = pass.depth(graph.createImage("hair depth", desc.with(Format::Depth32F)));
+        gpu::HairOpaquePush push = opaquePush(view);
+        push.ambient = settings.ambient;
+        push.lightCount = lightCount;
+        drawOpaque(graph, pass, buffers, push,
+                   plainSurfaces ? kernels::hair_opaque_frag : kernels::hair_depth_frag,
+                   Blend::None);
+    }
+    PassBuilder pass = graph.addRasterPass("hair strands");
+    ids.color = plainSurfaces ? pass.color(ids.color, {false, {}})
+                              : pass.color(graph.createImage("hair color", desc));
+    if (wantFeatures) {
+        ids.features = pass.color(graph.createImage("hair features", desc), {true, {0, 0, 1, 0}});
+        ids.shape = pass.color(graph.createImage("hair shape", desc));
+    }
+    ids.depth = pass.depth(ids.depth, {false, glm::vec4(1.0f)});
+    const StrandIds strands = readStrands(graph, pass, buffers);
+    pass.read(shaded);
+    const RasterDesc raster{.vertex = &kernels::hair_strands_vert,
+                            .fragment = wantFeatures ? &kernels::hair_features_frag
+                                                     : &kernels::hair_color_frag};
+    pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
+              {strands.points, strands.tangents, strands.segments, shaded});
+    return ids;
+}
+
+ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const HairView& view)
+{
+    // Not R16F: near 1 it rounds by 2^-11, which is 2.5 % of a strand that covers 0.02.
+    const ImageDesc desc{view.width, view.height, 1, Format::R32F, 1};
+    PassBuilder pass = graph.addRasterPass("hair exact coverage");
+    const ImageId product =
+        pass.color(graph.createImage("hair transmittance", desc), {true, glm::vec4(1.0f)});
+    [[maybe_unused]] const ImageId depth =
+        pass.depth(graph.createImage("hair coverage depth", desc.with(Format::Depth32F)));
+    drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_unhidden_frag,
+               Blend::Multiply);
+    const StrandIds strands = readStrands(graph, pass, buffers);
+    gpu::HairStrandPush push = strandPush(buffers, view);
+    push.border = 1.0f; // half a pixel on each side for the box filter of its edge
+    const RasterDesc raster{.vertex = &kernels::hair_silhouette_vert,
+                            .fragment = &kernels::hair_coverage_frag,
+                            .depthWrite = false,
+                            .blend = Blend::Multiply};
+    pass.draw(raster, buffers.segmentCount * 6, 1, push,
+              {strands.points, strands.tangents, strands.segments});
+    return product;
+}
+
+HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
+                            float weight)
+{
+    PassBuilder pass = graph.addComputePass("hair resolve");
+    pass.sample(samples.color);
+    sums.hair = pass.write(sums.hair);
+    sums.behind = pass.write(sums.behind);
+    const glm::uvec3 extent = graph.extent(samples.color);
+    pass.dispatch(kernels::hair_resolve, extent, gpu::HairResolvePush{extent.x, extent.y, weight},
+                  {Binding(samples.color, Filter::Nearest), sums.hair, sums.behind});
+    return sums;
+}
+
+} // namespace strandlight

@@ -1,0 +1,60 @@
+// The hair passes of one frame, each on its own: a network that filters the samples goes behind
+// addHairStrandsPass.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "engine/graph/render_graph.hpp"
+#include "passes/hair_strands.hpp"
+
+namespace strandlight {
+
+struct HairView
+{
+    glm::mat4 viewProjection = glm::mat4(1.0f);
+    glm::vec3 eye = glm::vec3(0.0f);
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    glm::vec2 jitter = glm::vec2(0.0f); // pixels
+    std::uint32_t frame = 0;
+    bool trueWidth = false; // else ribbons are at least a pixel wide
+    float alpha = 1.0f;
+};
+
+// Four samples a pixel, RGBA16F; what they hold is in shaders/hair/hair_features.frag.
+struct HairSampleIds
+{
+    ImageId color;    // radiance, 1 where hair
+    ImageId features; // brightness, illumination, transparency, depth; 0, 0, 1, 0 without hair
+    ImageId shape;    // tangent in the picture, 0, 0
+    ImageId depth;    // D32F
+};
+
+struct HairSums
+{
+    ImageId hair;   // RGBA32F [height, width], premultiplied radiance, transmittance
+    ImageId behind; // RGBA32F, radiance beside the hair times its share, that share
+};
+
+// Radiance of the strand points into `shaded` of the buffers, one pass (and one shadow map) a
+// light. `shadowed` says which lights have maps.
+BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
+                              std::span<const gpu::HairLight> lights,
+                              const std::vector<bool>& shadowed, const HairView& view,
+                              const HairRenderSettings& settings);
+
+// Opaque triangles, then strands. With `plainSurfaces` the triangles are shaded, else they only
+// hide. Features and shape stay invalid ids unless `wantFeatures`.
+HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
+                                 const HairView& view, const HairRenderSettings& settings,
+                                 std::uint32_t lightCount, bool plainSurfaces, bool wantFeatures);
+
+// R32F [height, width]: the product of 1 - alpha over all strands that nothing opaque hides.
+ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const HairView& view);
+
+// Adds weight times the mean of the four samples to the sums.
+HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
+                            float weight);
+
+} // namespace strandlight

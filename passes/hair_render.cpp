@@ -1,0 +1,196 @@
+#include "passes/hair_render.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/base/error.hpp"
+#include "passes/hair_passes.hpp"
+
+namespace strandlight {
+namespace {
+
+void checkSettings(const HairRenderSettings& s)
+{
+    const auto text = [](double value) { return std::to_string(value); };
+    if (s.width == 0 || s.height == 0 || s.width > 8192 || s.height > 8192)
+        throw Error("hair: the size " + std::to_string(s.width) + "x" + std::to_string(s.height) +
+                    " is not within 1 to 8192 pixels a side");
+    if (s.frames == 0)
+        throw Error("hair: at least one frame must be rendered");
+    if (!(s.alpha >= 0.0f && s.alpha <= 1.0f))
+        throw Error("hair: alpha is " + text(s.alpha) + ", it must be in [0, 1]");
+    if (!(s.roughness >= 0.05f && s.roughness <= 1.0f))
+        throw Error("hair: roughness is " + text(s.roughness) + ", it must be in [0.05, 1]");
+    if (!(std::abs(s.tiltDegrees) <= 10.0f))
+        throw Error("hair: tilt is " + text(s.tiltDegrees) + " degrees, it must be in [-10, 10]");
+    if (s.shadows && (s.shadowSize < 16 || s.shadowSize > 8192))
+        throw Error("hair: a shadow map of " + std::to_string(s.shadowSize) +
+                    " texels a side, it must be 16 to 8192");
+    if (!(glm::length(s.keyDirection) > 0.0f))
+        throw Error("hair: the key light needs a direction");
+    if (s.background && (s.background->width != s.width || s.background->height != s.height))
+        throw Error("hair: the background is " + std::to_string(s.background->width) + "x" +
+                    std::to_string(s.background->height) + ", the picture " +
+                    std::to_string(s.width) + "x" + std::to_string(s.height));
+}
+
+// Where the samples of frame i lie, off the pixel's by up to a quarter pixel: with the four
+// samples' own places that is close to a box of one pixel.
+// Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
+glm::vec2 frameJitter(std::uint32_t frame)
+{
+    const double x = 0.5 + 0.7548776662466927 * double(frame);
+    const double y = 0.5 + 0.5698402909980532 * double(frame);
+    return {float(0.5 * (x - std::floor(x)) - 0.25), float(0.5 * (y - std::floor(y)) - 0.25)};
+}
+
+void addTimings(std::vector<PassTiming>& sum, const std::vector<PassTiming>& more)
+{
+    for (const PassTiming& timing : more) {
+        const auto same = std::find_if(sum.begin(), sum.end(),
+                                       [&](const PassTiming& t) { return t.pass == timing.pass; });
+        if (same == sum.end())
+            sum.push_back(timing);
+        else
+            same->milliseconds += timing.milliseconds;
+    }
+}
+
+CpuImage backgroundPicture(const HairRenderSettings& settings)
+{
+    if (settings.background)
+        return *settings.background;
+    return CpuImage(settings.width, settings.height, glm::vec4(settings.backgroundColor, 1.0f));
+}
+
+// Hair over what is behind it. `behind` is premultiplied by the samples that showed it.
+void composite(HairFrame& frame, const CpuImage& behind, const HairRenderSettings& settings)
+{
+    frame.radiance = CpuImage(settings.width, settings.height);
+    for (std::size_t i = 0; i < frame.hair.pixels.size(); ++i) {
+        glm::vec4& hair = frame.hair.pixels[i];
+        const glm::vec4& open = behind.pixels[i];
+        const float noisy = hair.w;
+        if (settings.alphaCorrection && noisy < 1.0f) {
+            hair *= (1.0f - frame.exactTransmittance.pixels[i].x) / (1.0f - noisy);
+            hair.w = frame.exactTransmittance.pixels[i].x;
+        }
+        glm::vec3 back(0.0f);
+        if (settings.background)
+            back = glm::vec3(settings.background->pixels[i]);
+        else if (open.w > 0.0f)
+            back = glm::vec3(open) / open.w;
+        frame.radiance.pixels[i] = glm::vec4(glm::vec3(hair) + hair.w * back, 1.0f);
+    }
+}
+
+// Shading once, then every frame's samples into the sums.
+class FrameMaker
+{
+public:
+    FrameMaker(Context& context, const HairStrands& hair, const Scene* opaque, const Camera& camera,
+               const HairRenderSettings& settings, HairFrame& out)
+        : context_(context), settings_(settings), out_(out),
+          lights_(hairLights(hair, opaque, settings))
+    {
+        out.lod = settings.lod;
+        if (out.lod == 0)
+            out.lod = settings.mode == HairMode::Reference
+                          ? 1
+                          : automaticHairLod(hair, camera, settings.height);
+        buffers_ = uploadHair(context, hair, opaque, lights_, out.lod);
+        out.drawnStrands = buffers_.strandCount;
+        out.drawnSegments = buffers_.segmentCount;
+        view_.viewProjection = cameraViewProjection(camera, settings.width, settings.height,
+                                                    hairDepthRange(hair, opaque, camera));
+        view_.eye = camera.eye;
+        view_.width = settings.width;
+        view_.height = settings.height;
+        view_.alpha = settings.alpha;
+        planShadows(hair);
+    }
+
+    void shade()
+    {
+        RenderGraph graph(context_);
+        graph.setTimings(true);
+        addHairShadingPasses(graph, buffers_, lights_, shadowed_, view_, settings_);
+        if (!settings_.exactCoverage && !settings_.alphaCorrection) {
+            out_.skipped.push_back("hair exact coverage: not asked for");
+            graph.run();
+        } else {
+            const ImageId exact = addHairCoveragePass(graph, buffers_, view_);
+            graph.output(exact);
+            graph.run();
+            out_.exactTransmittance = graph.read(exact);
+        }
+        addTimings(out_.timings, graph.timings());
+    }
+
+    void averageFrames()
+    {
+        const ImageDesc desc{settings_.width, settings_.height, 1, Format::RGBA32F, 1};
+        Image hair(context_, desc, "hair sum");
+        Image behind(context_, desc, "behind sum");
+        HairView view = view_;
+        view.trueWidth = settings_.mode == HairMode::Reference;
+        for (std::uint32_t i = 0; i < settings_.frames; ++i) {
+            view.frame = settings_.frameIndex + i;
+            view.jitter = settings_.frames > 1 ? frameJitter(i) : glm::vec2(0.0f);
+            RenderGraph graph(context_);
+            graph.setTimings(true);
+            const HairSampleIds samples = addHairStrandsPass(
+                graph, buffers_, graph.importBuffer(buffers_.shaded), view, settings_,
+                std::uint32_t(lights_.size()), settings_.background == nullptr, false);
+            addHairResolvePass(graph, samples, {graph.importImage(hair), graph.importImage(behind)},
+                               1.0f / float(settings_.frames));
+            graph.run();
+            addTimings(out_.timings, graph.timings());
+        }
+        out_.hair = hair.download();
+        composite(out_, behind.download(), settings_);
+    }
+
+private:
+    void planShadows(const HairStrands& hair)
+    {
+        for (std::size_t i = 0; i < lights_.size(); ++i) {
+            const bool possible = hairLightCastsShadow(hair, lights_[i]);
+            shadowed_.push_back(settings_.shadows && possible);
+            if (!shadowed_.back())
+                out_.skipped.push_back("hair shadow " + std::to_string(i) + ": " +
+                                       (possible ? "switched off" : "the light is in the hair"));
+        }
+    }
+
+    Context& context_;
+    const HairRenderSettings& settings_;
+    HairFrame& out_;
+    std::vector<gpu::HairLight> lights_;
+    std::vector<bool> shadowed_;
+    HairBuffers buffers_;
+    HairView view_;
+};
+
+} // namespace
+
+HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opaque,
+                     const Camera& camera, const HairRenderSettings& settings)
+{
+    checkSettings(settings);
+    HairFrame frame;
+    if (hair.points.empty()) {
+        frame.radiance = backgroundPicture(settings);
+        frame.hair = CpuImage(settings.width, settings.height, {0.0f, 0.0f, 0.0f, 1.0f});
+        frame.skipped.push_back("hair: there is no strand");
+        return frame;
+    }
+    checkHair(hair);
+    FrameMaker maker(context, hair, opaque, camera, settings, frame);
+    maker.shade();
+    maker.averageFrames();
+    return frame;
+}
+
+} // namespace strandlight

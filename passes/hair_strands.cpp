@@ -1,0 +1,233 @@
+#include "passes/hair_strands.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace strandlight {
+namespace {
+
+constexpr float kBiasTexels = 1.5f;
+constexpr float kLodWidth = 0.15f; // pixels
+constexpr std::uint32_t kLodMost = 16;
+constexpr std::uint32_t kLodFewestStrands = 4096;
+
+struct Sphere
+{
+    glm::vec3 centre;
+    float radius;
+};
+
+Sphere boundingSphere(const HairStrands& hair)
+{
+    const glm::vec3 low = hair.boundsMin();
+    const glm::vec3 high = hair.boundsMax();
+    const float widest =
+        hair.radii.empty() ? 0.0f : *std::max_element(hair.radii.begin(), hair.radii.end());
+    return {0.5f * (low + high), 0.51f * glm::length(high - low) + widest + 1e-6f};
+}
+
+std::uint32_t packAlbedo(const Scene& scene, std::size_t triangle)
+{
+    const std::uint32_t material = scene.triangleMaterials.at(triangle);
+    const glm::vec4 color =
+        scene.materials.empty() ? glm::vec4(0.5f) : scene.materials.at(material).baseColor;
+    std::uint32_t word = 0;
+    for (int c = 0; c < 3; ++c)
+        word |= std::uint32_t(std::lround(std::clamp(color[c], 0.0f, 1.0f) * 255.0f)) << (8 * c);
+    return word;
+}
+
+std::vector<glm::vec4> surfaceCorners(const Scene& scene)
+{
+    std::vector<glm::vec4> corners;
+    corners.reserve(scene.triangles.size() * 6);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        const float albedo = glm::uintBitsToFloat(packAlbedo(scene, t));
+        for (int k = 0; k < 3; ++k) {
+            const Vertex& vertex = scene.vertices.at(scene.triangles[t][k]);
+            corners.emplace_back(vertex.position, albedo);
+            corners.emplace_back(vertex.normal, 0.0f);
+        }
+    }
+    return corners;
+}
+
+std::vector<glm::uvec2> drawnSegments(const HairStrands& hair, std::uint32_t lod)
+{
+    std::vector<glm::uvec2> segments;
+    for (std::uint32_t strand = 0; strand < hair.strandCount(); strand += lod)
+        for (std::uint32_t p = hair.firstPoint[strand]; p + 1 < hair.firstPoint[strand + 1]; ++p)
+            segments.emplace_back(p, strand);
+    return segments;
+}
+
+// Right-handed look-at with Vulkan's depth, along `forward`; the lateral axes are arbitrary.
+glm::mat4 lookAlong(glm::vec3 eye, glm::vec3 forward)
+{
+    const glm::vec3 helper = std::abs(forward.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    const glm::vec3 right = glm::normalize(glm::cross(forward, helper));
+    const glm::vec3 up = glm::cross(right, forward);
+    const glm::mat3 rows = glm::transpose(glm::mat3(right, -up, forward));
+    glm::mat4 view(rows);
+    view[3] = glm::vec4(-(rows * eye), 1.0f);
+    return view;
+}
+
+// How far opaque geometry reaches from the sphere's centre towards a light.
+float reachTowards(const Scene* opaque, const Sphere& sphere, glm::vec3 towards)
+{
+    float reach = sphere.radius;
+    if (opaque)
+        for (const Vertex& vertex : opaque->vertices)
+            reach = std::max(reach, glm::dot(vertex.position - sphere.centre, towards));
+    return 1.01f * reach;
+}
+
+void aimShadow(gpu::HairLight& light, const Sphere& sphere, const Scene* opaque, std::uint32_t size)
+{
+    glm::mat4 projection(0.0f);
+    if (light.type == std::uint32_t(LightType::Directional)) {
+        const float back = reachTowards(opaque, sphere, -light.direction);
+        projection[0][0] = projection[1][1] = 1.0f / sphere.radius;
+        projection[2][2] = 1.0f / (back + sphere.radius);
+        projection[3][3] = 1.0f;
+        light.shadowMatrix =
+            projection * lookAlong(sphere.centre - back * light.direction, light.direction);
+        light.shadowBias = kBiasTexels * 2.0f * sphere.radius / float(size);
+        return;
+    }
+    const glm::vec3 path = sphere.centre - light.position;
+    const float distance = glm::length(path);
+    if (!(distance > sphere.radius))
+        return; // hairLightCastsShadow is false
+    const float tangent =
+        sphere.radius / std::sqrt(distance * distance - sphere.radius * sphere.radius);
+    const float far = distance + sphere.radius;
+    const float near = 1e-3f * far;
+    projection[0][0] = projection[1][1] = 1.0f / tangent;
+    projection[2][2] = far / (far - near);
+    projection[2][3] = 1.0f;
+    projection[3][2] = -far * near / (far - near);
+    light.shadowMatrix = projection * lookAlong(light.position, path / distance);
+    light.shadowBias = kBiasTexels * 2.0f * tangent * distance / float(size);
+}
+
+} // namespace
+
+std::vector<glm::vec3> hairTangents(const HairStrands& hair)
+{
+    std::vector<glm::vec3> tangents(hair.points.size());
+    for (std::uint32_t strand = 0; strand < hair.strandCount(); ++strand) {
+        const std::uint32_t first = hair.firstPoint[strand];
+        const std::uint32_t last = hair.firstPoint[strand + 1] - 1;
+        for (std::uint32_t p = first; p <= last; ++p) {
+            const glm::vec3 before = hair.points[p > first ? p - 1 : p];
+            const glm::vec3 along = hair.points[p < last ? p + 1 : p] - before;
+            const float size = glm::length(along);
+            // Points that coincide take the tangent before them.
+            const glm::vec3 fallback = p > first ? tangents[p - 1] : glm::vec3(0.0f, 1.0f, 0.0f);
+            tangents[p] = size > 0.0f ? along / size : fallback;
+        }
+    }
+    return tangents;
+}
+
+HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* opaque,
+                       std::span<const gpu::HairLight> lights, std::uint32_t lod)
+{
+    HairBuffers buffers;
+    const std::size_t count = hair.points.size();
+    buffers.pointCount = std::uint32_t(count);
+    std::vector<glm::vec4> values(count);
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = glm::vec4(hair.points[i], hair.radii[i]);
+    buffers.points = Buffer::from(context, values, "hair points");
+    const std::vector<glm::vec3> tangents = hairTangents(hair);
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = glm::vec4(tangents[i], 0.0f);
+    buffers.tangents = Buffer::from(context, values, "hair tangents");
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = glm::vec4(hair.colors[i], 0.0f);
+    buffers.colors = Buffer::from(context, values, "hair colors");
+    buffers.shaded = Buffer(context, count * sizeof(glm::vec4), "hair shaded");
+
+    const std::vector<glm::uvec2> segments = drawnSegments(hair, lod);
+    buffers.segments = Buffer::from(context, segments, "hair segments");
+    buffers.segmentCount = std::uint32_t(segments.size());
+    buffers.strandCount = (hair.strandCount() + lod - 1) / lod;
+    buffers.widthScale = float(hair.strandCount()) / float(buffers.strandCount);
+    if (opaque && !opaque->triangles.empty()) {
+        buffers.surface = Buffer::from(context, surfaceCorners(*opaque), "hair occluders");
+        buffers.triangleCount = std::uint32_t(opaque->triangles.size());
+    }
+    buffers.lights = Buffer::from(context, lights, "hair lights");
+    return buffers;
+}
+
+std::vector<gpu::HairLight> hairLights(const HairStrands& hair, const Scene* opaque,
+                                       const HairRenderSettings& settings)
+{
+    std::vector<PunctualLight> sources;
+    if (opaque)
+        sources = opaque->lights;
+    if (sources.empty())
+        sources.push_back({.type = LightType::Directional,
+                           .direction = -glm::normalize(settings.keyDirection),
+                           .intensity = settings.keyIrradiance});
+    const Sphere sphere = boundingSphere(hair);
+    std::vector<gpu::HairLight> lights;
+    for (const PunctualLight& source : sources) {
+        gpu::HairLight light{};
+        light.position = source.position;
+        light.type = std::uint32_t(source.type);
+        light.direction = source.direction;
+        light.range = source.range;
+        light.intensity = source.intensity;
+        light.innerConeCos = source.innerConeCos;
+        light.outerConeCos = source.outerConeCos;
+        aimShadow(light, sphere, opaque, settings.shadowSize);
+        lights.push_back(light);
+    }
+    return lights;
+}
+
+bool hairLightCastsShadow(const HairStrands& hair, const gpu::HairLight& light)
+{
+    const Sphere sphere = boundingSphere(hair);
+    return light.type == std::uint32_t(LightType::Directional) ||
+           glm::length(light.position - sphere.centre) > 1.05f * sphere.radius;
+}
+
+DepthRange hairDepthRange(const HairStrands& hair, const Scene* opaque, const Camera& camera)
+{
+    glm::vec3 low = hair.boundsMin();
+    glm::vec3 high = hair.boundsMax();
+    if (opaque && !opaque->vertices.empty()) {
+        low = glm::min(low, opaque->boundsMin());
+        high = glm::max(high, opaque->boundsMax());
+    }
+    const glm::vec3 farthest = glm::max(glm::abs(low - camera.eye), glm::abs(high - camera.eye));
+    DepthRange range;
+    range.farPlane = std::max(1.01f * glm::length(farthest), 1e-3f);
+    range.nearPlane = 1e-3f * range.farPlane;
+    return range;
+}
+
+std::uint32_t automaticHairLod(const HairStrands& hair, const Camera& camera, std::uint32_t height)
+{
+    double sum = 0.0;
+    for (const float radius : hair.radii)
+        sum += double(radius);
+    const float mean = hair.radii.empty() ? 0.0f : float(sum / double(hair.radii.size()));
+    const Sphere sphere = boundingSphere(hair);
+    const float distance = std::max(glm::length(camera.eye - sphere.centre), 1e-6f);
+    const float pixelsPerUnit =
+        0.5f * float(height) / std::tan(glm::radians(0.5f * camera.verticalFovDegrees));
+    const float width = 2.0f * mean * pixelsPerUnit / distance;
+    const std::uint32_t byCount = std::clamp(hair.strandCount() / kLodFewestStrands, 1u, kLodMost);
+    if (!(width > 0.0f))
+        return byCount;
+    return std::clamp(std::uint32_t(std::min(kLodWidth / width, float(kLodMost))), 1u, byCount);
+}
+
+} // namespace strandlight

@@ -1,0 +1,60 @@
+// Strands, opaque triangles and lights on the device, as the hair passes fetch them
+// (shaders/shared/hair_types.h).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "engine/scene/camera.hpp"
+#include "engine/scene/hair.hpp"
+#include "engine/scene/scene.hpp"
+#include "engine/vk/buffer.hpp"
+#include "engine/vk/context.hpp"
+#include "passes/hair_render.hpp"
+#include "shaders/shared/hair_types.h"
+
+namespace strandlight {
+
+struct HairBuffers
+{
+    Buffer points;   // vec4 [points]
+    Buffer tangents; // vec4 [points]
+    Buffer colors;   // vec4 [points]
+    Buffer segments; // uvec2 [segments], of the drawn strands alone
+    Buffer shaded;   // vec4 [points], written by the shading pass
+    Buffer surface;  // vec4 [triangles, 3, 2]; not valid without opaque triangles
+    Buffer lights;   // HairLight [lights]; one zeroed element without any
+
+    std::uint32_t pointCount = 0;
+    std::uint32_t segmentCount = 0;
+    std::uint32_t strandCount = 0;   // drawn
+    std::uint32_t triangleCount = 0; // opaque
+    float widthScale = 1.0f;         // strands over drawn strands
+};
+
+// Unit tangents towards the tip, [points]: central differences, one-sided at both ends.
+std::vector<glm::vec3> hairTangents(const HairStrands& hair);
+
+// Draws every lod-th strand. `opaque` may be null.
+HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* opaque,
+                       std::span<const gpu::HairLight> lights, std::uint32_t lod);
+
+// The scene's punctual lights, or the key light of the settings, each with a shadow matrix that
+// holds the hair's bounds and a bias of 1.5 texels.
+std::vector<gpu::HairLight> hairLights(const HairStrands& hair, const Scene* opaque,
+                                       const HairRenderSettings& settings);
+
+// A light inside the hair's bounding sphere has no map that holds it all.
+bool hairLightCastsShadow(const HairStrands& hair, const gpu::HairLight& light);
+
+// Depth range of hair and opaque triangles together.
+DepthRange hairDepthRange(const HairStrands& hair, const Scene* opaque, const Camera& camera);
+
+// Every how many strands: so many that the drawn ones have about 0.15 pixels of width at the
+// bounds' centre, but never fewer than 4,096 strands, nor wider than 16 times.
+std::uint32_t automaticHairLod(const HairStrands& hair, const Camera& camera, std::uint32_t height);
+
+} // namespace strandlight

@@ -1,0 +1,29 @@
+// Plain average of four samples, added to a sum over frames: hair with its transmittance, and what shows beside it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shared/hair_types.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2DMS color; // radiance, 1 where hair
+layout(binding = 1, rgba32f) uniform image2D hair;
+layout(binding = 2, rgba32f) uniform image2D behind;
+layout(push_constant, scalar) uniform Push { HairResolvePush push; };
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= int(push.width) || pixel.y >= int(push.height)) {
+        return;
+    }
+    vec4 covered = vec4(0.0);
+    vec4 open = vec4(0.0);
+    for (int s = 0; s < 4; ++s) {
+        vec4 value = texelFetch(color, pixel, s);
+        covered.rgb += value.rgb * value.a;
+        open += vec4(value.rgb * (1.0 - value.a), 1.0 - value.a);
+    }
+    float weight = 0.25 * push.weight;
+    imageStore(hair, pixel, imageLoad(hair, pixel) + weight * vec4(covered.rgb, open.w));
+    imageStore(behind, pixel, imageLoad(behind, pixel) + weight * open);
+}

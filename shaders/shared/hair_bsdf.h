@@ -1,0 +1,133 @@
+// Light scattered by one hair fibre: R, TT and TRT. Longitudinal: d'Eon et al. An Energy-Conserving Hair Reflectance
+// Model. 2011, with the roughness of Chiang et al. A Practical and Controllable Hair and Fur Model. 2016; azimuthal:
+// Karis. Physically Based Hair Shading in Unreal. 2016, each lobe normalised.
+// The fibre runs along the tangent; angles are measured from its normal plane, so sin(theta) = dot(tangent, direction).
+// Weights are taken at the view's angle alone, so the three lobes share out one unit of energy exactly.
+#ifndef STRANDLIGHT_SHARED_HAIR_BSDF_H
+#define STRANDLIGHT_SHARED_HAIR_BSDF_H
+
+#ifdef __cplusplus
+#include "shaders/shared/gpu_types.h"
+#else
+#include "shared/gpu_types.h"
+#endif
+
+STRANDLIGHT_SHARED_BEGIN
+
+STRANDLIGHT_CONST(float) kHairF0 = 0.046520569f; // ((1 - 1.55) / (1 + 1.55))^2
+// 1 / integral of exp(k (cos(phi) - 1)) over 2 pi, k = 3.65 and 17.
+STRANDLIGHT_CONST(float) kHairNormTT = 0.73114621f;
+STRANDLIGHT_CONST(float) kHairNormTRT = 1.63245382f;
+
+// log of the modified Bessel function I0. Abramowitz, Stegun. Handbook of Mathematical Functions. 1964 (9.8.1, 9.8.2)
+STRANDLIGHT_FN float hairLogBesselI0(float x)
+{
+    if (x < 3.75f) {
+        float t = (x / 3.75f) * (x / 3.75f);
+        return log(1.0f + t * (3.5156229f + t * (3.0899424f + t * (1.2067492f +
+                   t * (0.2659732f + t * (0.0360768f + t * 0.0045813f))))));
+    }
+    float u = 3.75f / x;
+    float p = 0.39894228f + u * (0.01328592f + u * (0.00225319f + u * (-0.00157565f + u * (0.00916281f +
+              u * (-0.02057706f + u * (0.02635537f + u * (-0.01647633f + u * 0.00392377f)))))));
+    return x + log(p) - 0.5f * log(x);
+}
+
+// Longitudinal density with the cosine of the incident angle in it: its integral over cos(theta_i) d(theta_i) is 1.
+// All exponents are joined before the one exp: each alone overflows for small variances.
+STRANDLIGHT_FN float hairLongitudinal(float sinI, float cosI, float sinO, float cosO, float variance)
+{
+    float a = cosI * cosO / variance;
+    float b = sinI * sinO / variance;
+    // log(2 v sinh(1/v)) = 1/v + log(v (1 - exp(-2/v)))
+    float logNorm = 1.0f / variance + log(variance * (1.0f - exp(-2.0f / variance)));
+    return exp(hairLogBesselI0(a) - b - logNorm);
+}
+
+// Variance of R; TT has a quarter, TRT four times as much.
+STRANDLIGHT_FN float hairVariance(float roughness)
+{
+    float r = clamp(roughness, 0.05f, 1.0f);
+    float r2 = r * r;
+    float r4 = r2 * r2;
+    float r20 = r4 * r4 * r4 * r4 * r4;
+    float s = 0.726f * r + 0.812f * r2 + 3.7f * r20;
+    return s * s;
+}
+
+// Schlick's Fresnel term averaged over the fibre's width: cos(gamma) = c sqrt(1 - h^2), h uniform in [0, 1].
+STRANDLIGHT_FN float hairMeanFresnel(float c)
+{
+    float s = 1.0f + c * (-3.92699082f + c * (6.66666667f + c * (-5.89048623f + c * (2.66666667f - c * 0.49087385f))));
+    return kHairF0 + (1.0f - kHairF0) * clamp(s, 0.0f, 1.0f);
+}
+
+// The view's angle against one lobe's mean, which the scales tilt by `shift` (sine and cosine).
+STRANDLIGHT_FN vec2 hairTilt(float sinO, float cosO, vec2 shift)
+{
+    float s = sinO * shift.y - cosO * shift.x;
+    float c = abs(cosO * shift.y + sinO * shift.x);
+    return vec2(s, c);
+}
+
+// Radiance towards `view` for unit irradiance on a plane facing `light` (both unit, away from the fibre): the cosine
+// is included. `color` is the reflectance in [0, 1], tilt in radians.
+STRANDLIGHT_FN vec3 hairScatter(vec3 tangent, vec3 light, vec3 view, vec3 color, float roughness, float tilt)
+{
+    float sinI = clamp(dot(tangent, light), -1.0f, 1.0f);
+    float sinO = clamp(dot(tangent, view), -1.0f, 1.0f);
+    float cosI = sqrt(max(1.0f - sinI * sinI, 0.0f));
+    float cosO = sqrt(max(1.0f - sinO * sinO, 0.0f));
+    vec3 acrossI = light - tangent * sinI;
+    vec3 acrossO = view - tangent * sinO;
+    float lengths = dot(acrossI, acrossI) * dot(acrossO, acrossO);
+    // Along the fibre there is no azimuth: any will do.
+    float cosPhi = lengths > 1e-12f ? clamp(dot(acrossI, acrossO) / sqrt(lengths), -1.0f, 1.0f) : 1.0f;
+    float cosHalfPhi = sqrt(max(0.5f + 0.5f * cosPhi, 0.0f));
+
+    float cosD = max(cosO, 1e-2f);
+    float fresnel = hairMeanFresnel(cosD);
+    vec3 base = clamp(color, vec3(1e-5f), vec3(1.0f));
+    // Offset of the ray that leaves through the fibre, and how much pigment it meets (Karis).
+    float bend = 1.0f / (1.19f / cosD + 0.36f * cosD);
+    float h = clamp((1.0f + bend * (0.6f - 0.8f * cosPhi)) * cosHalfPhi, 0.0f, 1.0f);
+    float inside = sqrt(max(1.0f - h * h * bend * bend, 0.0f));
+    vec3 throughOnce = pow(base, vec3(inside / (2.0f * cosD)));
+    vec3 throughTwice = pow(base, vec3(0.8f / cosD));
+
+    float variance = hairVariance(roughness);
+    float st = sin(tilt);
+    float ct = cos(tilt);
+    vec2 r = hairTilt(sinO, cosO, vec2(-2.0f * st * ct, ct * ct - st * st)); // -2 tilt
+    vec2 tt = hairTilt(sinO, cosO, vec2(st, ct));                            // + tilt
+    float s2 = 2.0f * st * ct;
+    float c2 = ct * ct - st * st;
+    vec2 trt = hairTilt(sinO, cosO, vec2(2.0f * s2 * c2, c2 * c2 - s2 * s2)); // + 4 tilt
+
+    vec3 sum = vec3(fresnel * 0.25f * cosHalfPhi * hairLongitudinal(sinI, cosI, r.x, r.y, variance));
+    float through = (1.0f - fresnel) * (1.0f - fresnel);
+    sum += throughOnce * (through * kHairNormTT * exp(-3.65f * cosPhi - 3.65f) *
+                          hairLongitudinal(sinI, cosI, tt.x, tt.y, 0.25f * variance));
+    // TRT and all higher orders: a geometric series in fresnel.
+    sum += throughTwice * ((1.0f - fresnel) * fresnel * kHairNormTRT * exp(17.0f * cosPhi - 17.0f) *
+                           hairLongitudinal(sinI, cosI, trt.x, trt.y, 4.0f * variance));
+    return sum;
+}
+
+// Light that reaches the fibre by way of others: Karis's stand-in, a wrapped diffuse term about the fibre's side that
+// faces the viewer, tinted where more fibres were in the way. For unit irradiance before shadowing.
+STRANDLIGHT_FN vec3 hairMultipleScatter(vec3 tangent, vec3 light, vec3 view, vec3 color, float shadow)
+{
+    vec3 across = view - tangent * dot(tangent, view);
+    float size = sqrt(dot(across, across));
+    vec3 normal = size > 1e-4f ? across / size : view;
+    float wrapped = clamp((dot(normal, light) + 1.0f) * 0.25f, 0.0f, 1.0f);
+    vec3 base = clamp(color, vec3(1e-5f), vec3(1.0f));
+    float luminance = dot(base, vec3(0.2126f, 0.7152f, 0.0722f));
+    vec3 tint = pow(base / luminance, vec3(1.0f - clamp(shadow, 0.0f, 1.0f)));
+    return sqrt(base) * tint * (wrapped * 0.31830989f * shadow);
+}
+
+STRANDLIGHT_SHARED_END
+
+#endif

@@ -1,0 +1,77 @@
+// What the hair passes share: push constants, lights, and how strands lie in texel buffers.
+//   points   rgba32f [points]    position, true radius in metres
+//   tangents rgba32f [points]    unit tangent towards the tip
+//   colors   rgba32f [points]    linear albedo
+//   shaded   rgba32f [points]    radiance towards the camera, share of the lights that arrives
+//   segments rg32ui  [segments]  first of the segment's two points, strand
+//   surface  rgba32f [opaque triangles, 3, 2]  position, albedo as unorm bytes | unit normal, 0
+#ifndef STRANDLIGHT_SHARED_HAIR_TYPES_H
+#define STRANDLIGHT_SHARED_HAIR_TYPES_H
+
+#ifdef __cplusplus
+#include "shaders/shared/gpu_types.h"
+#else
+#include "shared/gpu_types.h"
+#endif
+
+STRANDLIGHT_SHARED_BEGIN
+
+struct HairStrandPush
+{
+    mat4 viewProjection; // world to Vulkan clip space
+    vec2 size;           // of the target in pixels
+    vec2 jitter;         // pixels, added to every position
+    float pixelsPerUnit; // of a length of 1 m at clip w = 1
+    float widthScale;    // drawn strands stand for this many
+    float minimumWidth;  // pixels: 1 where alpha makes up for the width, 0 for true width
+    float border;        // pixels by which ribbons grow beyond their width
+    float alpha;         // of a strand that covers its pixel
+    uint frame;          // of the sample masks
+};
+
+struct HairOpaquePush
+{
+    mat4 viewProjection;
+    vec2 size;
+    vec2 jitter;
+    vec3 ambient;
+    uint lightCount;
+};
+
+// Point and spot lights have a position, directional and spot lights a direction (shared numbering of light_types.h).
+struct HairLight
+{
+    mat4 shadowMatrix; // world to the shadow map's clip space
+    vec3 position;
+    uint type;         // 0 point, 1 spot, 2 directional
+    vec3 direction;    // the way the light travels
+    float range;       // 0: infinite
+    vec3 intensity;    // candela, or lux
+    float innerConeCos;
+    float outerConeCos;
+    float shadowBias;  // metres towards the light
+};
+
+struct HairShadePush
+{
+    vec3 eye;
+    float roughness;
+    vec3 ambient;
+    float tilt;       // radians
+    uint pointCount;
+    uint light;       // index; lightCount and more: ambient alone
+    uint lightCount;
+    uint first;       // 1: starts from the ambient term, 0: adds to `shaded`
+    uint shadowSize;
+};
+
+struct HairResolvePush
+{
+    uint width;
+    uint height;
+    float weight; // of this frame in the sum
+};
+
+STRANDLIGHT_SHARED_END
+
+#endif
