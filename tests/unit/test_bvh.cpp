@@ -131,6 +131,30 @@ TEST_CASE("bvh: tiny, huge, far and flat scenes")
     compareWithBruteForce(flat, 1.0f, {}, 400, 8);
 }
 
+TEST_CASE("bvh: boxes hold their triangles on the grid that rays know, also far from the origin")
+{
+    // At 1000 m fp32 steps are longer than those of the grid: an origin that is not rounded as the
+    // rays' one is would shift the boxes by more than their slack.
+    const glm::vec3 far(1000.1f, -2000.7f, 3.3f);
+    const Bvh bvh = buildBvh(randomSoup(300, 0.3f, 1.0f, far, 5));
+    for (const glm::uvec4& node : bvh.nodes) {
+        if (node.w < gpu::kLeafBit)
+            continue;
+        const std::uint32_t first = (node.w & ~gpu::kLeafBit) >> 3u;
+        for (std::uint32_t i = first; i < first + (node.w & 7u); ++i) {
+            const TriangleCorners t = triangleCorners(bvh, i);
+            for (const glm::vec3& p : {t.a, t.b, t.c})
+                for (int axis = 0; axis < 3; ++axis) {
+                    const double cell = (double(p[axis]) - double(bvh.grid.origin[axis])) *
+                                        double(bvh.grid.inverseStep[axis]);
+                    // Half of the step of slack must be left.
+                    REQUIRE(cell >= (node[axis] & 0xFFFFu) + 0.5);
+                    REQUIRE(cell <= (node[axis] >> 16u) - 0.5);
+                }
+        }
+    }
+}
+
 TEST_CASE("bvh: degenerate input")
 {
     // Five hundred times the same triangle, and points and needles among them.
