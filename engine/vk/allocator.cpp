@@ -86,12 +86,14 @@ Allocation Allocator::allocate(const VkMemoryRequirements& requirements, MemoryU
 
     Allocation out;
     bool found = false;
-    if (padded.size <= kDedicatedBytes)
-        for (std::uint32_t i = 0; i < blocks_.size() && !found; ++i)
-            found = blocks_[i].memory && blocks_[i].type == type && allocateFrom(i, padded, out);
+    const bool shared = padded.size <= kDedicatedBytes;
+    for (std::uint32_t i = 0; shared && i < blocks_.size() && !found; ++i)
+        found = blocks_[i].shared && blocks_[i].type == type && allocateFrom(i, padded, out);
     if (!found) {
-        const VkDeviceSize bytes = padded.size <= kDedicatedBytes ? kBlockBytes : padded.size;
-        STRANDLIGHT_ASSERT(allocateFrom(addBlock(type, bytes, name), padded, out));
+        const std::uint32_t block = addBlock(type, shared ? kBlockBytes : padded.size, name);
+        blocks_[block].shared = shared;
+        found = allocateFrom(block, padded, out);
+        STRANDLIGHT_ASSERT(found);
     }
     out.allocator_ = this;
     used_ += out.bytes_;
@@ -141,7 +143,10 @@ std::uint32_t Allocator::addBlock(std::uint32_t type, VkDeviceSize bytes, const 
     if ((flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) &&
         (flags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)) {
         void* mapped = nullptr;
-        check(vkMapMemory(device_, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
+        const VkResult result = vkMapMemory(device_, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
+        if (result != VK_SUCCESS)
+            vkFreeMemory(device_, block.memory, nullptr);
+        check(result, "vkMapMemory");
         block.mapped = static_cast<std::byte*>(mapped);
     }
     block.free[0] = bytes;
@@ -174,7 +179,7 @@ void Allocator::release(const Allocation& piece)
         }
     }
     const bool empty = block.free.size() == 1 && block.free.begin()->second == block.bytes;
-    if (empty && block.bytes != kBlockBytes) {
+    if (empty && !block.shared) {
         vkFreeMemory(device_, block.memory, nullptr);
         reserved_ -= block.bytes;
         block = Block{};

@@ -70,6 +70,7 @@ private:
         VkDeviceMemory memory = VK_NULL_HANDLE;
         VkDeviceSize bytes = 0;
         std::uint32_t type = 0;
+        bool shared = false; // by small resources, and kept; else freed with its one resource
         std::byte* mapped = nullptr;
         std::map<VkDeviceSize, VkDeviceSize> free; // offset -> bytes, neighbours merged
     };

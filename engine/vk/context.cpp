@@ -125,10 +125,7 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
     queue.queueFamilyIndex = state.queueFamily;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
-    DeviceFeatures features;
-    features.core.pNext = &features.v11;
-    features.v11.pNext = &features.v12;
-    features.v12.pNext = &features.v13;
+    const DeviceFeatures features;
     const char* const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.core};
     info.queueCreateInfoCount = 1;
@@ -151,91 +148,6 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
 }
 
 } // namespace
-
-VulkanState::~VulkanState()
-{
-    if (device) {
-        vkDeviceWaitIdle(device);
-        pipelines.reset();
-        allocator.reset();
-        vkDestroyFence(device, fence, nullptr);
-        vkDestroyCommandPool(device, commandPool, nullptr);
-        vkDestroyDevice(device, nullptr);
-    }
-    if (messenger)
-        vkDestroyDebugUtilsMessengerEXT(instance, messenger, nullptr);
-    if (instance)
-        vkDestroyInstance(instance, nullptr);
-}
-
-void VulkanState::submit(const std::function<void(VkCommandBuffer)>& record)
-{
-    VkCommandBufferAllocateInfo allocate{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    allocate.commandPool = commandPool;
-    allocate.commandBufferCount = 1;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    check(vkAllocateCommandBuffers(device, &allocate, &commands), "vkAllocateCommandBuffers");
-    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-    try {
-        record(commands);
-    } catch (...) {
-        vkFreeCommandBuffers(device, commandPool, 1, &commands);
-        throw;
-    }
-    check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-
-    VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
-    buffer.commandBuffer = commands;
-    VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
-    info.commandBufferInfoCount = 1;
-    info.pCommandBufferInfos = &buffer;
-    check(vkQueueSubmit2(queue, 1, &info, fence), "vkQueueSubmit2");
-    check(vkWaitForFences(device, 1, &fence, VK_TRUE, ~0ull), "vkWaitForFences");
-    check(vkResetFences(device, 1, &fence), "vkResetFences");
-    vkFreeCommandBuffers(device, commandPool, 1, &commands);
-    if (validationMessages != 0)
-        throw VulkanError("validation: " + firstValidationMessage);
-}
-
-void VulkanState::nameObject(VkObjectType type, std::uint64_t handle, const std::string& name) const
-{
-    if (!debugUtils)
-        return;
-    VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
-    info.objectType = type;
-    info.objectHandle = handle;
-    info.pObjectName = name.c_str();
-    vkSetDebugUtilsObjectNameEXT(device, &info);
-}
-
-void VulkanState::beginLabel(VkCommandBuffer commands, const std::string& name) const
-{
-    if (!debugUtils)
-        return;
-    VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
-    label.pLabelName = name.c_str();
-    vkCmdBeginDebugUtilsLabelEXT(commands, &label);
-}
-
-void VulkanState::endLabel(VkCommandBuffer commands) const
-{
-    if (debugUtils)
-        vkCmdEndDebugUtilsLabelEXT(commands);
-}
-
-void fullBarrier(VkCommandBuffer commands)
-{
-    VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    info.memoryBarrierCount = 1;
-    info.pMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands, &info);
-}
 
 Context::Context(std::unique_ptr<VulkanState> state) : state_(std::move(state)) {}
 Context::Context(Context&&) noexcept = default;

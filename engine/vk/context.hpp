@@ -18,10 +18,9 @@ struct DeviceInfo
 
 struct ContextSettings
 {
-    std::string
-        device; // "", an index, or part of a device name; "": discrete before integrated before cpu
-    bool validation =
-        false; // core + synchronization; messages throw when the next submit or the destructor runs
+    // An index or part of a device's name; "": discrete before integrated before cpu.
+    std::string device;
+    bool validation = false;        // core and synchronization; a message makes the submit throw
     bool pipelineCache = true;      // on disk, $XDG_CACHE_HOME/strandlight
     std::uint64_t memoryBudget = 0; // bytes; 0: 80 % of the device's heap
 };

@@ -54,13 +54,6 @@ int rank(const DeviceInfo& info)
     return int(found - std::begin(kOrder));
 }
 
-void chain(DeviceFeatures& features)
-{
-    features.core.pNext = &features.v11;
-    features.v11.pNext = &features.v12;
-    features.v12.pNext = &features.v13;
-}
-
 bool hasExtension(VkPhysicalDevice device, const char* name)
 {
     std::uint32_t count = 0;
@@ -69,6 +62,13 @@ bool hasExtension(VkPhysicalDevice device, const char* name)
     vkEnumerateDeviceExtensionProperties(device, nullptr, &count, list.data());
     return std::any_of(list.begin(), list.end(),
                        [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+// A number is an index and nothing else: "1" must not match a name with a 1 in it.
+bool isIndex(const std::string& text)
+{
+    return !text.empty() && std::all_of(text.begin(), text.end(),
+                                        [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 std::string lower(std::string text)
@@ -82,6 +82,9 @@ std::string lower(std::string text)
 
 DeviceFeatures::DeviceFeatures()
 {
+    core.pNext = &v11;
+    v11.pNext = &v12;
+    v12.pNext = &v13;
     for (const FeatureRow& row : kRequired)
         *row.get(*this) = VK_TRUE;
 }
@@ -104,7 +107,6 @@ DeviceInfo describeDevice(VkPhysicalDevice device)
         return info;
     }
     DeviceFeatures has;
-    chain(has);
     vkGetPhysicalDeviceFeatures2(device, &has.core);
     for (const FeatureRow& row : kRequired)
         if (!*row.get(has))
@@ -130,8 +132,9 @@ VkPhysicalDevice selectDevice(VkInstance instance, const std::string& wanted)
         report += "\n  " + std::to_string(i) + ": " + info.name;
         for (const std::string& reason : info.refusals)
             report += "; " + reason;
-        const bool matches = wanted.empty() || wanted == std::to_string(i) ||
-                             lower(info.name).find(lower(wanted)) != std::string::npos;
+        const bool matches = isIndex(wanted)
+                                 ? wanted == std::to_string(i)
+                                 : lower(info.name).find(lower(wanted)) != std::string::npos;
         if (matches && info.refusals.empty() && rank(info) < bestRank) {
             best = devices[i];
             bestRank = rank(info);

@@ -21,6 +21,8 @@ VkPhysicalDevice selectDevice(VkInstance instance, const std::string& wanted);
 struct DeviceFeatures
 {
     DeviceFeatures();
+    DeviceFeatures(const DeviceFeatures&) = delete; // the chain points into the struct
+    DeviceFeatures& operator=(const DeviceFeatures&) = delete;
     VkPhysicalDeviceFeatures2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     VkPhysicalDeviceVulkan11Features v11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES};
     VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};

@@ -1,6 +1,5 @@
 #include "engine/vk/pipeline_store.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -9,7 +8,7 @@
 #include "engine/base/file.hpp"
 #include "engine/base/log.hpp"
 #include "engine/vk/check.hpp"
-#include "engine/vk/image_formats.hpp"
+#include "engine/vk/specialization.hpp"
 #include "engine/vk/vulkan_state.hpp"
 
 namespace strandlight {
@@ -24,7 +23,8 @@ fs::path cacheFile(const VkPhysicalDeviceProperties& properties)
 {
     const char* xdg = std::getenv("XDG_CACHE_HOME");
     const char* home = std::getenv("HOME");
-    if (!xdg && !home)
+    const bool hasXdg = xdg != nullptr && *xdg != '\0';
+    if (!hasXdg && (home == nullptr || *home == '\0'))
         return {};
     std::string uuid;
     for (const std::uint8_t byte : properties.pipelineCacheUUID) {
@@ -36,19 +36,8 @@ fs::path cacheFile(const VkPhysicalDeviceProperties& properties)
     const std::uint32_t name =
         crc32(std::span(reinterpret_cast<const std::uint8_t*>(properties.deviceName),
                         std::string_view(properties.deviceName).size()));
-    const fs::path folder =
-        (xdg && *xdg ? fs::path(xdg) : fs::path(home) / ".cache") / "strandlight";
+    const fs::path folder = (hasXdg ? fs::path(xdg) : fs::path(home) / ".cache") / "strandlight";
     return folder / ("pipelines-" + uuid + "-" + std::to_string(name) + ".bin");
-}
-
-VkSpecializationInfo specialization(std::span<const std::uint32_t> constants,
-                                    std::vector<VkSpecializationMapEntry>& entries)
-{
-    entries.clear();
-    for (std::uint32_t i = 0; i < constants.size(); ++i)
-        entries.push_back({i, i * 4, 4});
-    return {std::uint32_t(entries.size()), entries.data(), constants.size_bytes(),
-            constants.data()};
 }
 
 VkDescriptorType toVulkan(BindingKind kind)
@@ -57,29 +46,6 @@ VkDescriptorType toVulkan(BindingKind kind)
         VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER,
         VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER};
     return kTypes[std::size_t(kind)];
-}
-
-// Both stages see one set of bindings; a binding that both declare must agree.
-Reflection merge(const Reflection& a, const Reflection& b, const char* name)
-{
-    Reflection out = a;
-    out.pushBytes = std::max(a.pushBytes, b.pushBytes);
-    for (const ReflectedBinding& binding : b.bindings) {
-        const auto same = std::find_if(out.bindings.begin(), out.bindings.end(),
-                                       [&](const auto& o) { return o.binding == binding.binding; });
-        if (same == out.bindings.end()) {
-            out.bindings.push_back(binding);
-        } else {
-            if (same->kind != binding.kind)
-                throw Error(std::string("shader ") + name + ", binding " +
-                            std::to_string(binding.binding) +
-                            ": the two stages declare different kinds");
-            same->readOnly = same->readOnly && binding.readOnly;
-        }
-    }
-    std::sort(out.bindings.begin(), out.bindings.end(),
-              [](const auto& x, const auto& y) { return x.binding < y.binding; });
-    return out;
 }
 
 } // namespace
@@ -110,7 +76,8 @@ PipelineStore::~PipelineStore()
         std::size_t bytes = 0;
         vkGetPipelineCacheData(state_.device, cache_, &bytes, nullptr);
         std::vector<std::uint8_t> data(bytes);
-        if (bytes > loadedBytes_ &&
+        // Other than what was loaded: something is new, or the driver has refused the old data.
+        if (bytes != loadedBytes_ &&
             vkGetPipelineCacheData(state_.device, cache_, &bytes, data.data()) == VK_SUCCESS) {
             try {
                 fs::create_directories(file_.parent_path());
@@ -129,7 +96,7 @@ PipelineStore::~PipelineStore()
     vkDestroyPipelineCache(state_.device, cache_, nullptr);
 }
 
-void PipelineStore::destroy(Pipeline& pipeline)
+void PipelineStore::destroy(Pipeline& pipeline) const
 {
     vkDestroyPipeline(state_.device, pipeline.handle, nullptr);
     vkDestroyPipelineLayout(state_.device, pipeline.layout, nullptr);
@@ -160,7 +127,7 @@ VkShaderModule PipelineStore::createModule(const KernelBlob& kernel) const
     return module;
 }
 
-void PipelineStore::createLayout(Pipeline& pipeline)
+void PipelineStore::createLayout(Pipeline& pipeline) const
 {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const ReflectedBinding& b : pipeline.reflection.bindings)
@@ -187,120 +154,36 @@ const Pipeline& PipelineStore::compute(const KernelBlob& kernel,
     const ComputeKey key{&kernel, {constants.begin(), constants.end()}};
     if (const auto found = compute_.find(key); found != compute_.end())
         return found->second;
-    Pipeline& pipeline = compute_[key];
+    Pipeline pipeline;
     pipeline.reflection = reflect(kernel);
     pipeline.stages = VK_SHADER_STAGE_COMPUTE_BIT;
-    createLayout(pipeline);
-    std::vector<VkSpecializationMapEntry> entries;
-    const VkSpecializationInfo special = specialization(constants, entries);
+    try {
+        createLayout(pipeline);
+        createCompute(pipeline, kernel, constants);
+    } catch (...) { // a half-made pipeline must not be found by the next call
+        destroy(pipeline);
+        throw;
+    }
+    ++created_;
+    return compute_.emplace(key, std::move(pipeline)).first->second;
+}
+
+void PipelineStore::createCompute(Pipeline& pipeline, const KernelBlob& kernel,
+                                  std::span<const std::uint32_t> constants) const
+{
+    const Specialization special(constants);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
     info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
     info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
     info.stage.module = createModule(kernel);
     info.stage.pName = "main";
-    info.stage.pSpecializationInfo = &special;
+    info.stage.pSpecializationInfo = &special.info();
     info.layout = pipeline.layout;
     const VkResult result =
         vkCreateComputePipelines(state_.device, cache_, 1, &info, nullptr, &pipeline.handle);
     vkDestroyShaderModule(state_.device, info.stage.module, nullptr);
     check(result, kernel.name);
     state_.nameObject(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline.handle), kernel.name);
-    ++created_;
-    return pipeline;
-}
-
-const Pipeline& PipelineStore::raster(const RasterDesc& desc, const RasterTargets& targets)
-{
-    RasterKey key{desc.vertex, desc.fragment, desc.constants, targets};
-    key.state.insert(key.state.end(), {std::uint32_t(desc.topology), desc.depthTest,
-                                       desc.depthWrite, desc.cullBack, std::uint32_t(desc.blend)});
-    if (const auto found = raster_.find(key); found != raster_.end())
-        return found->second;
-    Pipeline& pipeline = raster_[key];
-    pipeline.reflection =
-        merge(reflect(*desc.vertex), reflect(*desc.fragment), desc.fragment->name);
-    pipeline.stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    createLayout(pipeline);
-
-    std::vector<VkSpecializationMapEntry> entries;
-    const VkSpecializationInfo special = specialization(desc.constants, entries);
-    VkPipelineShaderStageCreateInfo stages[2] = {};
-    for (int i = 0; i < 2; ++i) {
-        stages[i].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stages[i].stage = i == 0 ? VK_SHADER_STAGE_VERTEX_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
-        stages[i].module = createModule(i == 0 ? *desc.vertex : *desc.fragment);
-        stages[i].pName = "main";
-        stages[i].pSpecializationInfo = &special;
-    }
-    const VkPipelineVertexInputStateCreateInfo vertexInput{
-        VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-    VkPipelineInputAssemblyStateCreateInfo assembly{
-        VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-    assembly.topology = desc.topology == Topology::Lines ? VK_PRIMITIVE_TOPOLOGY_LINE_LIST
-                                                         : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    VkPipelineViewportStateCreateInfo viewport{
-        VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
-    viewport.viewportCount = viewport.scissorCount = 1;
-    VkPipelineRasterizationStateCreateInfo raster{
-        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
-    raster.cullMode = desc.cullBack ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
-    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    raster.lineWidth = 1.0f;
-    VkPipelineMultisampleStateCreateInfo multisample{
-        VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
-    multisample.rasterizationSamples = VkSampleCountFlagBits(targets.samples);
-    VkPipelineDepthStencilStateCreateInfo depth{
-        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
-    depth.depthTestEnable = targets.depth && desc.depthTest;
-    depth.depthWriteEnable = targets.depth && desc.depthWrite;
-    depth.depthCompareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
-    VkPipelineColorBlendAttachmentState blend{};
-    blend.colorWriteMask = 0xF;
-    blend.blendEnable = desc.blend != Blend::None;
-    blend.srcColorBlendFactor =
-        desc.blend == Blend::Multiply ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
-    blend.dstColorBlendFactor =
-        desc.blend == Blend::Multiply ? VK_BLEND_FACTOR_SRC_COLOR : VK_BLEND_FACTOR_ONE;
-    blend.srcAlphaBlendFactor =
-        desc.blend == Blend::Multiply ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
-    blend.dstAlphaBlendFactor =
-        desc.blend == Blend::Multiply ? VK_BLEND_FACTOR_SRC_ALPHA : VK_BLEND_FACTOR_ONE;
-    const std::vector<VkPipelineColorBlendAttachmentState> blends(targets.colors.size(), blend);
-    VkPipelineColorBlendStateCreateInfo blending{
-        VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-    blending.attachmentCount = std::uint32_t(blends.size());
-    blending.pAttachments = blends.data();
-    const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
-    dynamic.dynamicStateCount = 2;
-    dynamic.pDynamicStates = dynamics;
-    std::vector<VkFormat> formats;
-    for (const Format format : targets.colors)
-        formats.push_back(toVulkan(format));
-    VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-    rendering.colorAttachmentCount = std::uint32_t(formats.size());
-    rendering.pColorAttachmentFormats = formats.data();
-    rendering.depthAttachmentFormat = targets.depth ? VK_FORMAT_D32_SFLOAT : VK_FORMAT_UNDEFINED;
-
-    VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
-    info.stageCount = 2;
-    info.pStages = stages;
-    info.pVertexInputState = &vertexInput;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &multisample;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &blending;
-    info.pDynamicState = &dynamic;
-    info.layout = pipeline.layout;
-    const VkResult result =
-        vkCreateGraphicsPipelines(state_.device, cache_, 1, &info, nullptr, &pipeline.handle);
-    for (const auto& stage : stages)
-        vkDestroyShaderModule(state_.device, stage.module, nullptr);
-    check(result, desc.fragment->name);
-    ++created_;
-    return pipeline;
 }
 
 } // namespace strandlight

@@ -60,9 +60,13 @@ private:
     };
     using ComputeKey = std::pair<const KernelBlob*, std::vector<std::uint32_t>>;
 
-    void createLayout(Pipeline& pipeline);
+    void createLayout(Pipeline& pipeline) const;
+    void createCompute(Pipeline& pipeline, const KernelBlob& kernel,
+                       std::span<const std::uint32_t> constants) const;
+    void createRaster(Pipeline& pipeline, const RasterDesc& desc, const RasterTargets& targets,
+                      std::span<const VkPipelineShaderStageCreateInfo> stages) const;
     VkShaderModule createModule(const KernelBlob& kernel) const;
-    void destroy(Pipeline& pipeline);
+    void destroy(Pipeline& pipeline) const;
 
     VulkanState& state_;
     std::filesystem::path file_; // empty: not on disk

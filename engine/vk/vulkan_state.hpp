@@ -51,6 +51,9 @@ struct VulkanState
     void beginLabel(VkCommandBuffer commands, const std::string& name) const;
     void endLabel(VkCommandBuffer commands) const;
     void nameObject(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+
+private:
+    void submitAndWait(VkCommandBuffer commands);
 };
 
 // Full execution and memory barrier: everything before is visible to everything after.
