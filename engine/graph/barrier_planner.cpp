@@ -65,8 +65,9 @@ void planBarriers(GraphPlan& plan)
                     planned.barriers.push_back({use.resource, Usage::None, use.usage, alias});
             } else if (needsBarrier(resource.kind, history.last, use.usage)) {
                 planned.barriers.push_back({use.resource, history.last, use.usage, false});
-                // A write after several kinds of reads waits for each of them.
-                if (writes(use.usage))
+                // A write after several kinds of reads waits for each of them. Those of an image
+                // differ in layout, so the last one has already waited for the others.
+                if (writes(use.usage) && resource.kind == ResourceKind::Buffer)
                     for (const Usage read : history.readsSinceWrite)
                         if (read != history.last)
                             planned.barriers.push_back({use.resource, read, use.usage, false});

@@ -18,6 +18,7 @@ class GraphResources
 public:
     explicit GraphResources(RenderGraph::State& graph);
 
+    std::uint32_t count() const { return std::uint32_t(buffers_.size()); }
     // Null where the plan does not use the resource.
     BufferState* buffer(std::uint32_t resource) const { return buffers_[resource]; }
     ImageState* image(std::uint32_t resource) const { return images_[resource]; }

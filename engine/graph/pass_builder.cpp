@@ -75,12 +75,15 @@ void PassBuilder::keep()
 void PassBuilder::fill(BufferId buffer, std::uint32_t word)
 {
     require(PassKind::Transfer, "fill");
+    requireDeclared(buffer, Usage::TransferWrite);
     commands().commands.push_back(FillCommand{buffer, word});
 }
 
 void PassBuilder::copy(BufferId from, BufferId to, std::uint64_t bytes)
 {
     require(PassKind::Transfer, "copy");
+    requireDeclared(from, Usage::TransferRead);
+    requireDeclared(to, Usage::TransferWrite);
     if (bytes > graph_->desc(from).bytes || bytes > graph_->desc(to).bytes)
         throw GraphError("pass '" + name() + "' copies " + std::to_string(bytes) +
                          " bytes, more than a buffer has");
@@ -130,9 +133,20 @@ void PassBuilder::addDraw(const RasterDesc& pipeline, std::uint32_t vertexCount,
 void PassBuilder::require(PassKind kind, const char* verb) const
 {
     static const char* const kNames[] = {"compute", "raster", "transfer"};
+    if (graph_->state_->plan)
+        throw GraphError("pass '" + name() + "' was changed after compile(): build a new graph");
     if (commands().kind != kind)
         throw GraphError("pass '" + name() + "' is a " + kNames[std::size_t(commands().kind)] +
                          " pass: " + verb + " belongs in a " + kNames[std::size_t(kind)] + " pass");
+}
+
+void PassBuilder::requireDeclared(BufferId buffer, Usage usage) const
+{
+    for (const UseDescription& use : graph_->state_->description.passes[pass_].uses)
+        if (use.resource == buffer.index && use.usage == usage)
+            return;
+    throw GraphError("pass '" + name() +
+                     "' has not declared a buffer that it works on: " + toString(usage));
 }
 
 PassCommands& PassBuilder::commands() const

@@ -49,8 +49,7 @@ struct LoadOp
 class PassBuilder
 {
 public:
-    // --- declaring; each returns the handle to bind below
-    // -------------------------------------------------------
+    // --- declaring; each returns the handle to bind below ---
     BufferId read(BufferId buffer); // storage or texel buffer, read only
     ImageId read(ImageId image);    // storage image, read only
     ImageId sample(ImageId image);  // combined image sampler
@@ -61,10 +60,9 @@ public:
     [[nodiscard]] ImageId depth(ImageId image, LoadOp load = {true, glm::vec4(1.0f)});
     ImageId depthReadOnly(ImageId image);
 
-    // --- running; several dispatches of one pass are ordered by full compute barriers
-    // ----------------------------- Threads, not groups: the group count comes from the shader's
-    // local size. `push` may be empty: NoPush{}. `constants` are specialisation constants 0, 1, 2,
-    // ... (32-bit each).
+    // --- running; several dispatches of one pass are ordered by full barriers ---
+    // Threads, not groups: the group count comes from the shader's local size. `push` may be empty:
+    // NoPush{}. `constants` are specialisation constants 0, 1, 2, ... (32-bit each).
     template <class Push>
     void dispatch(const KernelBlob& kernel, glm::uvec3 threads, const Push& push,
                   std::initializer_list<Binding> bindings,
@@ -93,8 +91,8 @@ public:
         addDraw(pipeline, vertexCount, instanceCount, std::as_bytes(std::span(&push, 1)),
                 std::vector<Binding>(bindings));
     }
-    void fill(BufferId buffer, std::uint32_t word); // buffer must be written by this pass
-    void copy(BufferId from, BufferId to, std::uint64_t bytes);
+    void fill(BufferId buffer, std::uint32_t word);             // after write(buffer)
+    void copy(BufferId from, BufferId to, std::uint64_t bytes); // after read(from), write(to)
 
     void keep(); // never culled: the pass has an effect outside the graph
 
@@ -106,6 +104,7 @@ private:
     ImageId use(ImageId id, Usage usage);
     BufferId readIndirect(BufferId buffer);
     void require(PassKind kind, const char* verb) const;
+    void requireDeclared(BufferId buffer, Usage usage) const;
     PassCommands& commands() const;
     const std::string& name() const;
     void addDispatch(const KernelBlob& kernel, glm::uvec3 threads, std::span<const std::byte> push,

@@ -29,6 +29,8 @@ std::uint32_t RenderGraph::State::use(std::uint32_t pass, std::uint32_t resource
                                       std::uint32_t version, Usage usage)
 {
     PassDescription& user = description.passes[pass];
+    if (plan)
+        throw GraphError("pass '" + user.name + "' was changed after compile(): build a new graph");
     if (resource >= description.resources.size())
         throw GraphError("pass '" + user.name +
                          "' uses a handle that no create or import returned");
@@ -179,6 +181,8 @@ PassBuilder RenderGraph::addTransferPass(std::string_view name)
 
 void RenderGraph::output(BufferId buffer)
 {
+    if (state_->plan)
+        throw GraphError("output() after compile(): build a new graph");
     if (!buffer.valid() || buffer.version != state_->description.resources.at(buffer.index).version)
         throw GraphError("output() of an old version: use the handle that the last write returned");
     state_->description.resources[buffer.index].output = true;

@@ -37,16 +37,15 @@ public:
     {
     };
     explicit RenderGraph(Context& context);
-    explicit RenderGraph(
-        PlanOnly); // no device: compile(), text() and graphviz() work, execute() throws
+    // No device: compile(), text() and graphviz() work, execute() throws.
+    explicit RenderGraph(PlanOnly);
     ~RenderGraph();
     RenderGraph(const RenderGraph&) = delete;
     RenderGraph& operator=(const RenderGraph&) = delete;
 
     const Context& context() const; // the device, for limits that passes depend on
 
-    // --- resources
-    // ----------------------------------------------------------------------------------------------
+    // --- resources ---
     // Transient: memory exists between first and last use and may be shared with others.
     BufferId createBuffer(std::string_view name, std::uint64_t bytes);
     ImageId createImage(std::string_view name, const ImageDesc& desc);
@@ -65,14 +64,12 @@ public:
     const ImageDesc& desc(ImageId image) const;
     glm::uvec3 extent(ImageId image) const; // (width, height, layers)
 
-    // --- passes
-    // -------------------------------------------------------------------------------------------------
+    // --- passes ---
     PassBuilder addComputePass(std::string_view name);
     PassBuilder addRasterPass(std::string_view name);
     PassBuilder addTransferPass(std::string_view name);
 
-    // --- roots and running
-    // --------------------------------------------------------------------------------------
+    // --- roots and running ---
     void output(BufferId buffer); // what does not reach an output or an import is culled
     void output(ImageId image);
     const GraphPlan& compile(); // throws GraphError naming pass and resource

@@ -59,9 +59,10 @@ TEST_CASE("images: compute writes, raster samples, the copy is read back")
     PassBuilder draw = graph.addRasterPass("copy");
     draw.sample(gradient);
     copy = draw.color(copy);
-    draw.draw(
-        {.vertex = &kernels::full_screen_vert, .fragment = &kernels::sample_image_frag, .depthTest = false},
-        3, 1, NoPush{}, {{gradient, Filter::Nearest}});
+    draw.draw({.vertex = &kernels::full_screen_vert,
+               .fragment = &kernels::sample_image_frag,
+               .depthTest = false},
+              3, 1, NoPush{}, {{gradient, Filter::Nearest}});
     graph.output(copy);
     graph.setTimings(true);
     graph.run();
@@ -137,11 +138,58 @@ TEST_CASE("the memory budget is kept: too much is refused by name, and what fits
     CHECK(small.peakBytesAllocated() < settings.memoryBudget);
 }
 
+TEST_CASE("memory of large resources is given back: a budget for two holds any number in turn")
+{
+    ContextSettings settings;
+    settings.memoryBudget = std::uint64_t(64) << 20;
+    Context small = Context::headless(settings);
+    for (int i = 0; i < 4; ++i)
+        CHECK_NOTHROW(Buffer(small, std::uint64_t(32) << 20, "large"));
+    CHECK(small.bytesAllocated() == 0);
+}
+
 TEST_CASE("an unknown device is refused with the list of what there is")
 {
     ContextSettings settings;
     settings.device = "no such device";
     CHECK_THROWS_AS(Context::headless(settings), VulkanError);
+    // A number is an index, although it may stand in a device's name ("LLVM 15").
+    settings.device = std::to_string(Context::devices().size());
+    CHECK_THROWS_AS(Context::headless(settings), VulkanError);
+}
+
+TEST_CASE("a graph that fails while it is recorded leaves its imports usable")
+{
+    Image image(test::context(), {.width = 4, .height = 4}, "kept");
+    CpuImage pixels(4, 4);
+    pixels.at(2, 3) = glm::vec4(5.0f);
+    image.upload(pixels);
+    {
+        RenderGraph graph(test::context());
+        ImageId id = graph.importImage(image);
+        PassBuilder good = graph.addComputePass("good");
+        id = good.write(id);
+        PassBuilder bad = graph.addComputePass("bad");
+        bad.sample(id);
+        bad.keep();
+        bad.dispatch(kernels::gradient, {4, 4, 1}, gpu::GradientPush{4, 4, 1.0f}, {id});
+        CHECK_THROWS_AS(graph.run(), GraphError);
+    }
+    CHECK(image.download().at(2, 3) == glm::vec4(5.0f));
+    CHECK(test::context().validationMessages() == 0);
+}
+
+TEST_CASE("a shader that cannot be made is refused each time, not only the first")
+{
+    const std::uint32_t words[] = {0x07230203u, 0x00010500u, 0u, 1u, 0u, 0x00000011u};
+    const KernelBlob broken{"broken", words, std::size(words)};
+    for (int i = 0; i < 2; ++i) {
+        RenderGraph graph(test::context());
+        PassBuilder pass = graph.addComputePass("broken");
+        pass.keep();
+        pass.dispatch(broken, {1, 1, 1}, NoPush{}, {});
+        CHECK_THROWS_WITH_AS(graph.run(), "shader broken: broken SPIR-V", Error);
+    }
 }
 
 TEST_CASE("the validation layer is awake: a seeded fault is heard")

@@ -226,3 +226,50 @@ TEST_CASE("the plan prints as text and as Graphviz")
     CHECK(graph.text().find("make: data@0(shader write)") != std::string::npos);
     CHECK(graph.graphviz().find("digraph") == 0);
 }
+
+TEST_CASE("a write to an image waits once: reads in other layouts have waited for each other")
+{
+    RenderGraph graph{RenderGraph::PlanOnly{}};
+    ImageId image = graph.createImage("image", {.width = 4, .height = 4});
+    image = graph.addComputePass("make").write(image);
+    PassBuilder sampler = graph.addComputePass("sampler");
+    sampler.sample(image);
+    sampler.keep();
+    PassBuilder reader = graph.addComputePass("reader");
+    reader.read(image);
+    reader.keep();
+    image = graph.addComputePass("overwrite").write(image);
+    graph.output(image);
+    const GraphPlan& plan = graph.compile();
+    REQUIRE(plan.passes.size() == 4);
+    CHECK(plan.passes[3].barriers ==
+          std::vector<PlannedBarrier>{{image.index, Usage::ShaderRead, Usage::ShaderWrite, false}});
+}
+
+TEST_CASE("a compiled graph is not changed")
+{
+    RenderGraph graph{RenderGraph::PlanOnly{}};
+    BufferId data = graph.createBuffer("data", 16);
+    PassBuilder pass = graph.addTransferPass("fill");
+    data = pass.write(data);
+    graph.output(data);
+    graph.compile();
+    CHECK_THROWS_AS(graph.output(data), GraphError);
+    CHECK_THROWS_AS(pass.read(data), GraphError);
+    CHECK_THROWS_AS(pass.fill(data, 0), GraphError);
+}
+
+TEST_CASE("fill and copy work on what the pass declares")
+{
+    RenderGraph graph{RenderGraph::PlanOnly{}};
+    BufferId from = graph.createBuffer("from", 16), to = graph.createBuffer("to", 16);
+    PassBuilder pass = graph.addTransferPass("transfer");
+    CHECK_THROWS_AS(pass.fill(from, 0), GraphError);
+    from = pass.write(from);
+    CHECK_NOTHROW(pass.fill(from, 0));
+    PassBuilder second = graph.addTransferPass("copy");
+    second.read(from);
+    CHECK_THROWS_AS(second.copy(from, to, 16), GraphError);
+    to = second.write(to);
+    CHECK_NOTHROW(second.copy(from, to, 16));
+}
