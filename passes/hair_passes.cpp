@@ -2,13 +2,15 @@
 
 #include <string>
 
+#include "engine/base/error.hpp"
 #include "kernels.gen.hpp"
 
 namespace strandlight {
 namespace {
 
 static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 96 &&
-              sizeof(gpu::HairShadePush) == 52 && sizeof(gpu::HairLight) == 120);
+              sizeof(gpu::HairShadePush) == 52 && sizeof(gpu::HairLight) == 120 &&
+              sizeof(gpu::HairInputPush) == 16);
 
 gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view)
 {
@@ -195,6 +197,27 @@ HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, Ha
     pass.dispatch(kernels::hair_resolve, extent, gpu::HairResolvePush{extent.x, extent.y, weight},
                   {Binding(samples.color, Filter::Nearest), sums.hair, sums.behind});
     return sums;
+}
+
+BufferId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
+                          float depthOffset, float depthScale)
+{
+    if (!samples.features.valid() || !samples.shape.valid())
+        throw Error("hair: the network's input needs strands drawn with features");
+    const glm::uvec3 extent = graph.extent(samples.features);
+    PassBuilder pass = graph.addComputePass("hair network input");
+    pass.sample(samples.features);
+    pass.sample(samples.shape);
+    pass.sample(exact);
+    const std::uint64_t bytes =
+        std::uint64_t(extent.x) * extent.y * gpu::kHairInputPlanes * sizeof(float);
+    const BufferId planes = pass.write(graph.createBuffer("hair network input", bytes));
+    const gpu::HairInputPush push{extent.x, extent.y, depthOffset, depthScale};
+    pass.dispatch(kernels::hair_input, extent, push,
+                  {Binding(samples.features, Filter::Nearest),
+                   Binding(samples.shape, Filter::Nearest), Binding(exact, Filter::Nearest),
+                   planes});
+    return planes;
 }
 
 } // namespace strandlight

@@ -57,4 +57,9 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
                             float weight);
 
+// fp32 [25, height, width], planes as kHairInputPlanes says: what a network reads. Depth becomes
+// (depth - offset) * scale. Throws Error when the samples came without features.
+BufferId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
+                          float depthOffset, float depthScale);
+
 } // namespace strandlight

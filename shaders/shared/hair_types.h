@@ -72,6 +72,18 @@ struct HairResolvePush
     float weight; // of this frame in the sum
 };
 
+// Planes of the network's input, [25, height, width]: value v of sample s is plane 4 v + s; the last is the exact
+// transmittance. Values: brightness, illumination, transparency, depth, tangent x, tangent y.
+STRANDLIGHT_CONST(uint) kHairInputPlanes = 25u;
+
+struct HairInputPush
+{
+    uint width;
+    uint height;
+    float depthOffset; // planes hold (depth - offset) * scale, 0 without hair
+    float depthScale;
+};
+
 STRANDLIGHT_SHARED_END
 
 #endif
