@@ -11,7 +11,6 @@
 #include "passes/fit_report.hpp"
 #include "passes/light_field_baselines.hpp"
 #include "passes/lightfield_capture.hpp"
-#include "passes/sg_energy.hpp"
 #include "passes/sg_fit.hpp"
 
 namespace strandlight {
@@ -109,9 +108,7 @@ SgField fit(Context& context, const FitProblem& problem, const FitSettings& sett
             progress = state;
             saver.save();
         };
-    SgField field = fitLobes(context, problem, settings, nullptr, &checkpoint);
-    matchIrradiance(problem, field);
-    return field;
+    return fitLobes(context, problem, settings, nullptr, &checkpoint);
 }
 
 double rmseAtTexels(const FitProblem& problem, const SgField& field)

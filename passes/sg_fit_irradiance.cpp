@@ -2,64 +2,86 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "engine/base/assert.hpp"
 #include "shaders/shared/rgb9e5.h"
-#include "shaders/shared/sg.h"
+#include "shaders/shared/sg_diffuse.h"
+#include "shaders/shared/sg_fit_types.h"
 
 namespace strandlight {
+
 namespace {
 
-constexpr double kLargestFactor = 2.0;
+constexpr double kLargestFactor = 2.0; // a texel that needs more has another trouble
 
-// Cosine-weighted mean radiance of a texel's image.
-glm::dvec3 capturedIrradiance(const FitProblem& problem, std::size_t texel)
+// Irradiance of the captured images. [texel]; texels without an image get 0.
+std::vector<glm::dvec3> capturedIrradiance(const FitProblem& problem)
 {
-    glm::dvec3 sum(0.0);
-    for (std::size_t d = 0; d < problem.directions.size(); ++d) {
-        const glm::vec4& direction = problem.directions[d];
-        const glm::vec3 radiance =
-            gpu::unpackRgb9e5(problem.images[d * problem.texelCount() + texel]);
-        sum += glm::dvec3(radiance) * double(direction.w * direction.z);
+    const std::uint32_t texels = problem.texelCount();
+    std::vector<glm::dvec3> out(texels, glm::dvec3(0.0));
+    double cosineSum = 0.0;
+    for (const glm::vec4& direction : problem.directions)
+        cosineSum += double(direction.z) * double(direction.w);
+    for (std::uint32_t d = 0; d < problem.directionCount(); ++d) {
+        // The cells' cosines add up to pi exactly, whatever the midpoint rule says.
+        const double weight = double(problem.directions[d].z) * double(problem.directions[d].w) *
+                              double(gpu::kPi) / cosineSum;
+        for (std::uint32_t t = 0; t < texels; ++t)
+            if (problem.scales[t] >= 0.0f)
+                out[t] +=
+                    weight *
+                    glm::dvec3(gpu::unpackRgb9e5(problem.images[std::size_t(d) * texels + t]));
     }
-    return sum;
+    return out;
 }
 
-// The same of its lobes, in the same directions.
-glm::dvec3 fittedIrradiance(const FitProblem& problem, const SgLobe* lobes, std::uint32_t count)
+std::vector<glm::dvec3> lobeIrradiance(const FitProblem& problem, const SgField& field)
 {
-    glm::dvec3 sum(0.0);
-    for (std::uint32_t k = 0; k < count; ++k) {
-        const float sharpness = std::exp(lobes[k].logSharpness);
-        double cosine = 0.0;
-        for (const glm::vec4& direction : problem.directions)
-            cosine += double(direction.w * direction.z *
-                             gpu::sgEvaluate(glm::vec3(direction), lobes[k].axis, sharpness));
-        sum += glm::dvec3(lobes[k].amplitude) * cosine;
-    }
-    return sum;
+    std::vector<glm::dvec3> out(problem.texelCount(), glm::dvec3(0.0));
+    for (std::uint32_t t = 0; t < problem.texelCount(); ++t)
+        for (std::uint32_t k = 0; problem.scales[t] >= 0.0f && k < field.lobeCount; ++k) {
+            const SgLobe& lobe = field.lobes[std::size_t(t) * field.lobeCount + k];
+            out[t] += glm::dvec3(lobe.amplitude) *
+                      double(gpu::sgIrradiance(std::exp(lobe.logSharpness), lobe.axis.z));
+        }
+    return out;
+}
+
+void averageOverNeighbours(const FitCells& cells, std::vector<glm::dvec3>& values)
+{
+    std::vector<glm::dvec3> next = values;
+    for (std::uint32_t t = 0; t < cells.texelCount; ++t)
+        for (std::uint32_t side = 0; side < 4; ++side) {
+            const std::uint32_t other = cells.neighbours[std::size_t(side) * cells.texelCount + t];
+            if (other != gpu::kSgFitNone)
+                next[t] += values[other];
+        }
+    values = std::move(next); // sums, not means: only the ratio of two such arrays is used
 }
 
 } // namespace
 
-std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field)
+std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field, std::uint32_t rounds)
 {
+    STRANDLIGHT_ASSERT_EQ(field.lobes.size(), std::size_t(problem.texelCount()) * field.lobeCount);
+    std::vector<glm::dvec3> wanted = capturedIrradiance(problem);
+    std::vector<glm::dvec3> given = lobeIrradiance(problem, field);
+    for (std::uint32_t round = 0; round < rounds; ++round) {
+        averageOverNeighbours(problem.cells, wanted);
+        averageOverNeighbours(problem.cells, given);
+    }
     std::uint64_t held = 0;
-    for (std::size_t texel = 0; texel < problem.texelCount(); ++texel) {
-        if (!(problem.scales[texel] > 0.0f))
-            continue;
-        SgLobe* lobes = field.lobes.data() + texel * field.lobeCount;
-        const glm::dvec3 wanted = capturedIrradiance(problem, texel);
-        const glm::dvec3 given = fittedIrradiance(problem, lobes, field.lobeCount);
+    for (std::size_t texel = 0; texel < problem.texelCount(); ++texel)
         for (int channel = 0; channel < 3; ++channel) {
-            if (!(given[channel] > 0.0))
+            if (!(given[texel][channel] > 0.0))
                 continue;
-            const double factor = wanted[channel] / given[channel];
+            const double factor = wanted[texel][channel] / given[texel][channel];
             const double kept = std::clamp(factor, 1.0 / kLargestFactor, kLargestFactor);
             held += kept != factor ? 1 : 0;
             for (std::uint32_t k = 0; k < field.lobeCount; ++k)
-                lobes[k].amplitude[channel] *= float(kept);
+                field.lobes[texel * field.lobeCount + k].amplitude[channel] *= float(kept);
         }
-    }
     return held;
 }
 

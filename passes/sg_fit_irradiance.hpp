@@ -1,4 +1,6 @@
-// The last touch of a fit: every texel's lobes give the irradiance that was captured.
+// The last touch of a fit: lobes send as much light onto their surface as the images did.
+// Least squares under the fit's weights (bright directions count less, so that one lamp does not
+// rule a texel) loses a few per cent of the energy; a diffuse surface shows exactly that.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +10,11 @@
 
 namespace strandlight {
 
-// Scales each texel's amplitudes, channel by channel, so that the cosine-weighted integral of its
-// lobes over the hemisphere is that of its image. A fit of radiance alone is 1 to 3 % off,
-// differently in each texel, which shows as blotches on plain walls. Texels without image and black
-// channels stay; factors are held to [0.5, 2]. Returns how many channels were held.
-std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field);
+// Scales the amplitudes of every texel, per channel, so that sgIrradiance() of its lobes (what
+// shading evaluates) equals the cosine-weighted sum over its image, both summed over neighbours of
+// the chart for `rounds` rounds: the noise of one texel's capture must not become a blotch. Texels
+// without image follow their neighbours, black channels stay; factors are held to [0.5, 2]. Returns
+// how many were held. Deterministic, on the CPU.
+std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field, std::uint32_t rounds = 2);
 
 } // namespace strandlight
