@@ -110,7 +110,9 @@ FitReport studyFits(Context& context, const Scene& scene, const FitStudySettings
     between.seed += 1; // noise of its own
     attachImages(probes, capture(context, scene, device, atlas, places, between, "truth between"));
 
-    std::vector<LightFieldModel> models{sphericalHarmonicModel(problem, 2),
+    // The raw row keeps every image: what is wrong between texels there is parallax and noise, not
+    // the model.
+    std::vector<LightFieldModel> models{rawImageModel(problem), sphericalHarmonicModel(problem, 2),
                                         sphericalHarmonicModel(problem, 3),
                                         fixedSgModel(problem, settings.fit.lobes)};
     for (const FitMode mode : settings.modes) {

@@ -22,7 +22,7 @@ struct FitStudySettings
 };
 
 // Captures the radiance of a scene at its texels and at points in the middle of four texels, where
-// no fit has looked. Rows: SH L1, SH L2, fixed-direction SGs, then `modes`. Throws Error on a scene
+// no fit has looked. Rows: raw images, SH L1, SH L2, fixed-direction SGs, then `modes`. Throws Error on a scene
 // that cannot be captured, Interrupted when the user stops.
 FitReport studyFits(Context& context, const Scene& scene, const FitStudySettings& settings);
 
