@@ -13,7 +13,7 @@
 #include "engine/scene/scene.hpp"
 #include "engine/vk/buffer.hpp"
 #include "engine/vk/context.hpp"
-#include "passes/hair_render.hpp"
+#include "passes/hair_lights.hpp"
 #include "shaders/shared/hair_types.h"
 
 namespace strandlight {
@@ -41,14 +41,6 @@ std::vector<glm::vec3> hairTangents(const HairStrands& hair);
 // Draws every lod-th strand. `opaque` may be null.
 HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* opaque,
                        std::span<const gpu::HairLight> lights, std::uint32_t lod);
-
-// The scene's punctual lights, or the key light of the settings, each with a shadow matrix that
-// holds the hair's bounds and a bias of 1.5 texels.
-std::vector<gpu::HairLight> hairLights(const HairStrands& hair, const Scene* opaque,
-                                       const HairRenderSettings& settings);
-
-// A light inside the hair's bounding sphere has no map that holds it all.
-bool hairLightCastsShadow(const HairStrands& hair, const gpu::HairLight& light);
 
 // Depth range of hair and opaque triangles together.
 DepthRange hairDepthRange(const HairStrands& hair, const Scene* opaque, const Camera& camera);

@@ -9,6 +9,7 @@
 
 #include "engine/base/error.hpp"
 #include "passes/hair_passes.hpp"
+#include "shaders/shared/hair_masks.h"
 #include "tests/support/gpu_fixture.hpp"
 
 using namespace strandlight;
@@ -121,6 +122,27 @@ TEST_CASE("hair network input: the samples are those of the average")
             partial = partial || (transmittance > 0.0f && transmittance < 1.0f);
         }
     CHECK(partial);
+}
+
+TEST_CASE("hair network input: the device's sample masks are those of the C++ twin")
+{
+    constexpr float kAlpha = 0.6f;
+    const Input input = networkInput(kAlpha);
+    int checked = 0;
+    for (std::uint32_t y = 0; y < kSide; ++y)
+        for (std::uint32_t x = 0; x < kSide; ++x) {
+            // Distance from the ribbon's middle, in pixels; its edges are at 5.
+            const float right = float(x) + 0.5f - 0.5f * float(kSide);
+            const float up = 0.5f * float(kSide) - float(y) - 0.5f;
+            if (std::abs(2.0f * up - right) / std::sqrt(5.0f) > 4.0f)
+                continue;
+            const std::uint32_t mask =
+                gpu::hairSampleMask(kAlpha, gpu::hairFragmentBits(0, 0, x, y, 0));
+            for (std::uint32_t s = 0; s < 4; ++s)
+                REQUIRE(input.at(2, s, x, y) == ((mask >> s & 1u) != 0u ? 0.0f : 1.0f));
+            ++checked;
+        }
+    CHECK(checked > 200);
 }
 
 TEST_CASE("hair network input: strands without features are refused")
