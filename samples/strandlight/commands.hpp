@@ -13,5 +13,6 @@ Command addCompare(CLI::App& parent);
 Command addFits(CLI::App& parent);
 Command addReport(CLI::App& parent);
 Command addNnCheck(CLI::App& parent);
+Command addHair(CLI::App& parent);
 
 } // namespace strandlight::cli

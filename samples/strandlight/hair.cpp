@@ -1,0 +1,221 @@
+// strandlight hair: pictures of hair files and built-in grooms.
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "engine/base/error.hpp"
+#include "engine/base/progress.hpp"
+#include "passes/hair_render.hpp"
+#include "samples/strandlight/commands.hpp"
+#include "samples/strandlight/hair_options.hpp"
+#include "samples/strandlight/outputs.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+constexpr std::uint32_t kSamplesPerFrame = 4; // of MSAA
+constexpr std::uint32_t kMostSamples = 1u << 14;
+constexpr std::uint32_t kMostLod = 256;
+
+struct Options
+{
+    DeviceOptions device;
+    HairOptions source;
+    ViewOptions view;
+    HairRenderSettings settings;
+    std::uint32_t samples = kSamplesPerFrame;
+    std::string filter = "average";
+    std::string lod = "auto";
+    bool stats = false;
+    std::string json;
+};
+
+std::uint32_t parseLod(const std::string& text)
+{
+    if (text == "auto")
+        return 0;
+    for (std::uint32_t k = 1; k <= kMostLod; ++k)
+        if (text == std::to_string(k))
+            return k;
+    throw Error("--lod: '" + text + "' is neither auto nor 1 .. " + std::to_string(kMostLod));
+}
+
+std::uint32_t framesOf(std::uint32_t samples, const char* option)
+{
+    if (samples % kSamplesPerFrame != 0)
+        throw Error(std::string(option) + ": " + std::to_string(samples) +
+                    " is not a multiple of " + std::to_string(kSamplesPerFrame));
+    return samples / kSamplesPerFrame;
+}
+
+double totalMilliseconds(const HairFrame& frame)
+{
+    double total = 0.0;
+    for (const PassTiming& timing : frame.timings)
+        total += timing.milliseconds;
+    return total;
+}
+
+// What the user gave of a groom's settings.
+Json describeGroom(const GroomOptions& o)
+{
+    Json json = Json::object();
+    const auto add = [&](const char* name, const auto& value) {
+        if (value)
+            json[name] = *value;
+    };
+    add("segments", o.segments);
+    add("length", o.length);
+    add("clumping", o.clumping);
+    add("frizz", o.frizz);
+    add("color_variation", o.colorVariation);
+    add("seed", o.seed);
+    return json;
+}
+
+Json describe(const std::string& command, const Options& o, const Context& context,
+              const Camera& camera, const HairStrands& hair, const HairFrame& frame, double seconds)
+{
+    Json json = describeRun(command, &context);
+    json["settings"] = {{"hair", o.source.hair},
+                        {"scene", o.source.scene},
+                        {"groom", describeGroom(o.source.groom)},
+                        {"strands", hair.strandCount()},
+                        {"segments", hair.segmentCount()},
+                        {"width_factor", o.source.width},
+                        {"width", o.settings.width},
+                        {"height", o.settings.height},
+                        {"camera", describeCamera(camera)},
+                        {"samples", o.settings.frames * kSamplesPerFrame},
+                        {"filter", o.filter},
+                        {"frame", o.settings.frameIndex},
+                        {"shadows", o.settings.shadows},
+                        {"exposure", o.view.exposure}};
+    Json passes = Json::array();
+    for (const PassTiming& timing : frame.timings)
+        passes.push_back({{"name", timing.pass}, {"milliseconds", timing.milliseconds}});
+    json["result"] = {{"files", o.view.outputs},
+                      {"lod", frame.lod},
+                      {"drawn_strands", frame.drawnStrands},
+                      {"drawn_segments", frame.drawnSegments},
+                      {"passes", passes},
+                      {"skipped", frame.skipped},
+                      {"milliseconds", totalMilliseconds(frame)},
+                      {"peak_device_bytes", context.peakBytesAllocated()},
+                      {"seconds", seconds}};
+    return json;
+}
+
+void printStats(const Context& context, const HairFrame& frame)
+{
+    std::printf("device    %s\n", context.device().name.c_str());
+    std::printf("hair      %u strands, %u segments drawn, level of detail %u\n", frame.drawnStrands,
+                frame.drawnSegments, frame.lod);
+    for (const PassTiming& timing : frame.timings)
+        std::printf("pass      %-24s %9.3f ms\n", timing.pass.c_str(), timing.milliseconds);
+    for (const std::string& pass : frame.skipped)
+        std::printf("culled    %s\n", pass.c_str());
+    std::printf("together  %.3f ms, device memory %s\n", totalMilliseconds(frame),
+                bytesText(context.peakBytesAllocated()).c_str());
+}
+
+int run(const std::string& command, Options& o)
+{
+    const auto start = std::chrono::steady_clock::now();
+    for (const std::string& output : o.view.outputs)
+        requireOutput(output, {".png", ".exr"});
+    requireOutput(o.json, {".json"});
+    const Size size = parseSize(o.view.size);
+    o.settings.width = size.width;
+    o.settings.height = size.height;
+    const HairStrands hair = openHair(o.source);
+    const std::optional<Scene> opaque = openOpaque(o.source);
+    const Camera camera =
+        o.view.camera.empty() ? hairCamera(hair) : chooseCamera(Scene{}, o.view.camera);
+    Context context = openDevice(o.device);
+
+    const HairFrame frame =
+        renderHair(context, hair, opaque ? &*opaque : nullptr, camera, o.settings);
+    throwIfInterrupted();
+    for (const std::string& output : o.view.outputs)
+        writePicture(output, frame.radiance, o.view.exposure);
+
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    if (o.stats)
+        printStats(context, frame);
+    for (const std::string& output : o.view.outputs)
+        std::printf("wrote     %s, %.1f s\n", output.c_str(), elapsed.count());
+    writeJson(o.json, describe(command, o, context, camera, hair, frame, elapsed.count()));
+    return 0;
+}
+
+void addPictureOptions(CLI::App& app, Options& o)
+{
+    addHairOptions(app, o.source);
+    o.view.size = "640x384";
+    addViewOptions(app, o.view);
+    app.add_flag("!--no-shadows", o.settings.shadows, "Do not let hair shadow itself");
+    app.add_flag("--stats", o.stats, "Print passes that ran, milliseconds, and what was culled");
+    addJsonOption(app, o.json);
+    addDeviceOptions(app, o.device);
+}
+
+Command addHairRender(CLI::App& parent)
+{
+    CLI::App* app = parent.add_subcommand("render", "Stochastic transparency, samples averaged");
+    const auto o = std::make_shared<Options>();
+    addPictureOptions(*app, *o);
+    addNumber(*app, "--samples", o->samples, "Per pixel, a multiple of 4", 4u, kMostSamples);
+    app->add_option("--filter", o->filter,
+                    "average: of the samples; coverage: scaled to the exact coverage as well")
+        ->type_name("FILTER")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"average", "coverage"}));
+    addNumber(*app, "--frame", o->settings.frameIndex, "Another frame has other noise", 0u,
+              1u << 24);
+    app->add_option("--lod", o->lod,
+                    "Draw every K-th strand K times wider; auto: by projected width")
+        ->type_name("auto|K")
+        ->capture_default_str();
+    addExamples(*app, "  strandlight hair render builtin:wavy -o wavy.png --stats\n"
+                      "  strandlight hair render mohawk.tfx -o mohawk.png --samples 16 --lod 2");
+    return {app, [o] {
+                o->settings.frames = framesOf(o->samples, "--samples");
+                o->settings.alphaCorrection = o->filter == "coverage";
+                o->settings.lod = parseLod(o->lod);
+                return run("hair render", *o);
+            }};
+}
+
+Command addHairReference(CLI::App& parent)
+{
+    CLI::App* app =
+        parent.add_subcommand("reference", "The truth: strands of true width, supersampled");
+    const auto o = std::make_shared<Options>();
+    o->samples = 256;
+    addPictureOptions(*app, *o);
+    addNumber(*app, "--spp", o->samples, "Per pixel, a multiple of 4", 4u, kMostSamples);
+    addExamples(*app, "  strandlight hair reference builtin:wavy -o truth.exr --spp 1024");
+    return {app, [o] {
+                o->settings.mode = HairMode::Reference;
+                o->settings.frames = framesOf(o->samples, "--spp");
+                o->settings.lod = 1;
+                return run("hair reference", *o);
+            }};
+}
+
+} // namespace
+
+Command addHair(CLI::App& parent)
+{
+    CLI::App* app = parent.add_subcommand("hair", "Hair with stochastic transparency");
+    app->require_subcommand(1);
+    const Command commands[] = {addHairRender(*app), addHairReference(*app)};
+    return {app, [render = commands[0], reference = commands[1]] {
+                return render.app->parsed() ? render.run() : reference.run();
+            }};
+}
+
+} // namespace strandlight::cli

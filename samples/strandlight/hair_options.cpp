@@ -1,0 +1,96 @@
+#include "samples/strandlight/hair_options.hpp"
+
+#include "engine/base/error.hpp"
+#include "engine/scene/grooms.hpp"
+#include "engine/scene/hair_head.hpp"
+#include "engine/scene/hair_loader.hpp"
+#include "engine/scene/scene_loader.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+const std::string kBuiltin = "builtin:";
+
+template <class T> void choose(T& value, const std::optional<T>& given)
+{
+    if (given)
+        value = *given;
+}
+
+HairStrands openGroom(const std::string& name, const GroomOptions& o)
+{
+    GroomSettings settings = groomSettings(name);
+    choose(settings.strands, o.strands);
+    choose(settings.segments, o.segments);
+    choose(settings.lengthMetres, o.length);
+    choose(settings.clumping, o.clumping);
+    choose(settings.frizz, o.frizz);
+    choose(settings.colorVariation, o.colorVariation);
+    choose(settings.seed, o.seed);
+    return makeGroom(name, settings);
+}
+
+HairStrands openFile(const std::string& path, const GroomOptions& o)
+{
+    if (o.segments || o.length || o.clumping || o.frizz)
+        throw Error(
+            "--segments, --length, --clumping and --frizz are for builtin grooms, not for " + path);
+    HairDefaults defaults;
+    choose(defaults.colorVariation, o.colorVariation);
+    choose(defaults.seed, o.seed);
+    const HairStrands strands = loadHair(path, defaults);
+    return o.strands ? selectStrands(strands, *o.strands) : strands;
+}
+
+template <class T>
+void addGiven(CLI::App& app, const std::string& name, std::optional<T>& value,
+              const std::string& meaning, T lowest, T highest)
+{
+    app.add_option(name, value, meaning)->type_name("N")->check(CLI::Range(lowest, highest));
+}
+
+} // namespace
+
+void addHairOptions(CLI::App& app, HairOptions& o)
+{
+    std::string grooms;
+    for (const std::string& name : groomNames())
+        grooms += (grooms.empty() ? "" : "|") + name;
+    app.add_option("HAIR", o.hair, ".tfx, .hair or builtin:" + grooms)->required()->type_name("");
+    app.add_option("--scene", o.scene, "What hides and lights the hair; default: a head for grooms")
+        ->type_name("SCENE");
+    addGiven(app, "--strands", o.groom.strands, "So many", 1u, kMostGroomStrands);
+    addGiven(app, "--segments", o.groom.segments, "Of a groom's strand", 1u, kMostGroomSegments);
+    addGiven(app, "--length", o.groom.length, "Of a groom in metres", 0.005f, 2.0f);
+    addGiven(app, "--clumping", o.groom.clumping, "Of a groom's locks", 0.0f, 1.0f);
+    addGiven(app, "--frizz", o.groom.frizz, "Of a groom", 0.0f, 1.0f);
+    addGiven(app, "--color-variation", o.groom.colorVariation, "By strand and along it", 0.0f,
+             1.0f);
+    app.add_option("--width", o.width, "Factor on the width of all strands")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01f, 100.0f));
+    addGiven(app, "--seed", o.groom.seed, "Of groom and colours", 0u, ~0u);
+}
+
+HairStrands openHair(const HairOptions& o)
+{
+    const bool isGroom = o.hair.starts_with(kBuiltin);
+    HairStrands strands =
+        isGroom ? openGroom(o.hair.substr(kBuiltin.size()), o.groom) : openFile(o.hair, o.groom);
+    for (float& radius : strands.radii)
+        radius *= o.width;
+    return strands;
+}
+
+std::optional<Scene> openOpaque(const HairOptions& o)
+{
+    if (!o.scene.empty())
+        return loadScene(o.scene);
+    if (o.hair.starts_with(kBuiltin))
+        return headScene();
+    return std::nullopt;
+}
+
+} // namespace strandlight::cli
