@@ -36,6 +36,14 @@ std::span<const std::uint8_t> ByteReader::take(std::uint64_t count)
     return part;
 }
 
+void ByteReader::seek(std::uint64_t position)
+{
+    if (position > bytes_.size())
+        fail("continues at byte " + std::to_string(position) + " of " +
+             std::to_string(bytes_.size()));
+    at_ = position;
+}
+
 void ByteReader::finish() const
 {
     if (left() != 0)

@@ -78,6 +78,8 @@ public:
     std::string text(std::uint32_t longest);
     std::span<const std::uint8_t> take(std::uint64_t count);
     std::uint64_t left() const { return bytes_.size() - at_; }
+    std::uint64_t size() const { return bytes_.size(); }
+    void seek(std::uint64_t position);
     void finish() const; // fails when anything follows
     [[noreturn]] void fail(const std::string& reason) const;
 

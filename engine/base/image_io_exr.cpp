@@ -1,21 +1,18 @@
-// Reads OpenEXR pictures. Our own reader, because tinyexr 1.0.1 (which writes them) overruns its heap
-// on broken PIZ data and leaks on others. It takes what we need: one part, scanlines, NONE, ZIPS or
-// ZIP, half or float channels.
+// Reads OpenEXR pictures. Our own reader, because tinyexr 1.0.1 (which writes them) overruns its
+// heap on broken PIZ data and leaks on others. It takes what we need: one part, scanlines, NONE,
+// ZIPS or ZIP, half or float channels.
 //
 // Kainz, Bogart, Stanczyk. Technical Introduction to OpenEXR. 2013; OpenEXR File Layout.
 #include "engine/base/image_io_formats.hpp"
 
 #include <array>
-#include <bit>
 #include <cstring>
 #include <optional>
 
 #include <glm/gtc/packing.hpp>
 
-#include "engine/base/error.hpp"
+#include "engine/base/byte_stream.hpp"
 #include "engine/base/image_io.hpp"
-
-static_assert(std::endian::native == std::endian::little, "EXR is read by memcpy");
 
 namespace strandlight {
 
@@ -48,71 +45,27 @@ struct Header
     std::uint32_t rowsPerChunk() const { return compression == kZip ? 16 : 1; }
 };
 
-class ExrReader
+// Ends with a zero byte.
+std::string readName(ByteReader& reader)
 {
-public:
-    ExrReader(std::span<const std::uint8_t> bytes, const std::string& name)
-        : bytes_(bytes), name_(name)
-    {
+    std::string text;
+    for (char c = reader.value<char>(); c != '\0'; c = reader.value<char>()) {
+        text.push_back(c);
+        if (text.size() > 255)
+            reader.fail("a name has more than 255 characters");
     }
-
-    [[noreturn]] void fail(const std::string& reason) const
-    {
-        throw FileError(name_, "byte " + std::to_string(position_), reason);
-    }
-
-    std::span<const std::uint8_t> take(std::size_t count)
-    {
-        if (count > bytes_.size() - position_)
-            fail("the file ends here, " + std::to_string(count) + " more bytes are expected");
-        const auto part = bytes_.subspan(position_, count);
-        position_ += count;
-        return part;
-    }
-
-    template <typename T> T read()
-    {
-        T value;
-        std::memcpy(&value, take(sizeof(T)).data(), sizeof(T));
-        return value;
-    }
-
-    std::string readString()
-    {
-        std::string text;
-        for (char c = read<char>(); c != '\0'; c = read<char>()) {
-            text.push_back(c);
-            if (text.size() > 255)
-                fail("a name has more than 255 characters");
-        }
-        return text;
-    }
-
-    void seek(std::uint64_t position)
-    {
-        if (position > bytes_.size())
-            fail("a chunk is said to start at byte " + std::to_string(position) + ", past the end");
-        position_ = position;
-    }
-
-    std::size_t position() const { return position_; }
-    std::size_t size() const { return bytes_.size(); }
-
-private:
-    std::span<const std::uint8_t> bytes_;
-    const std::string& name_;
-    std::size_t position_ = 0;
-};
+    return text;
+}
 
 std::vector<Channel> readChannels(std::span<const std::uint8_t> value, const std::string& name)
 {
-    ExrReader reader(value, name);
+    ByteReader reader(value, name);
     std::vector<Channel> channels;
-    for (std::string label = reader.readString(); !label.empty(); label = reader.readString()) {
-        Channel channel{label, reader.read<std::int32_t>()};
+    for (std::string label = readName(reader); !label.empty(); label = readName(reader)) {
+        Channel channel{label, reader.value<std::int32_t>()};
         reader.take(4); // pLinear and padding
-        const auto xSampling = reader.read<std::int32_t>();
-        const auto ySampling = reader.read<std::int32_t>();
+        const auto xSampling = reader.value<std::int32_t>();
+        const auto ySampling = reader.value<std::int32_t>();
         if (channel.type < 0 || channel.type > 2)
             reader.fail("channel " + label + " has the unknown type " +
                         std::to_string(channel.type));
@@ -123,11 +76,11 @@ std::vector<Channel> readChannels(std::span<const std::uint8_t> value, const std
     return channels;
 }
 
-void readVersion(ExrReader& reader)
+void readVersion(ByteReader& reader)
 {
-    if (reader.read<std::uint32_t>() != 20000630u)
+    if (reader.value<std::uint32_t>() != 20000630u)
         reader.fail("is not an OpenEXR picture (wrong magic number)");
-    const auto version = reader.read<std::uint32_t>();
+    const auto version = reader.value<std::uint32_t>();
     if ((version & 0xFFu) != 2)
         reader.fail("has OpenEXR version " + std::to_string(version & 0xFFu) + ", only 2 is known");
     if (version & 0x200u)
@@ -139,7 +92,7 @@ void readVersion(ExrReader& reader)
 }
 
 // Refuses everything the decoder below does not handle, before anything is allocated for pixels.
-void checkHeader(Header& header, const ExrReader& reader, const std::string& name)
+void checkHeader(Header& header, const ByteReader& reader, const std::string& name)
 {
     if (!header.compression || !header.dataWindow || header.channels.empty())
         reader.fail("the header lacks channels, compression or dataWindow");
@@ -167,30 +120,30 @@ void checkHeader(Header& header, const ExrReader& reader, const std::string& nam
                     " x " + std::to_string(height) + " pixels");
 }
 
-Header readHeader(ExrReader& reader, const std::string& name)
+Header readHeader(ByteReader& reader, const std::string& name)
 {
     readVersion(reader);
     Header header;
-    for (std::string key = reader.readString(); !key.empty(); key = reader.readString()) {
-        const std::string type = reader.readString();
-        const auto size = reader.read<std::int32_t>();
+    for (std::string key = readName(reader); !key.empty(); key = readName(reader)) {
+        const std::string type = readName(reader);
+        const auto size = reader.value<std::int32_t>();
         if (size < 0)
             reader.fail("attribute " + key + " has a negative size");
         const auto value = reader.take(static_cast<std::size_t>(size));
-        ExrReader attribute(value, name);
+        ByteReader attribute(value, name);
         if (key == "channels" && type == "chlist")
             header.channels = readChannels(value, name);
         else if (key == "compression" && type == "compression")
-            header.compression = attribute.read<std::uint8_t>();
+            header.compression = attribute.value<std::uint8_t>();
         else if (key == "dataWindow" && type == "box2i")
-            header.dataWindow = attribute.read<std::array<std::int32_t, 4>>();
+            header.dataWindow = attribute.value<std::array<std::int32_t, 4>>();
     }
     checkHeader(header, reader, name);
     return header;
 }
 
 // For each of R, G, B, A: which channel of the file, or -1. A lone Y is grey.
-std::array<int, 4> mapChannels(const Header& header, const ExrReader& reader)
+std::array<int, 4> mapChannels(const Header& header, const ByteReader& reader)
 {
     const auto find = [&](const std::string& label) {
         for (std::size_t i = 0; i < header.channels.size(); ++i)
@@ -251,14 +204,14 @@ void storeRow(const Header& header, const std::array<int, 4>& map, const std::ui
 }
 
 // One block of rows from the file to `plain`; returns the index of its first row.
-std::uint32_t readChunk(ExrReader& reader, const Header& header, std::vector<std::uint8_t>& plain)
+std::uint32_t readChunk(ByteReader& reader, const Header& header, std::vector<std::uint8_t>& plain)
 {
-    const std::int64_t y = std::int64_t(reader.read<std::int32_t>()) - (*header.dataWindow)[1];
+    const std::int64_t y = std::int64_t(reader.value<std::int32_t>()) - (*header.dataWindow)[1];
     if (y < 0 || y >= header.height || y % header.rowsPerChunk() != 0)
         reader.fail("a block of rows starts at the impossible row " + std::to_string(y));
     const auto firstRow = static_cast<std::uint32_t>(y);
     const std::uint32_t rows = std::min(header.rowsPerChunk(), header.height - firstRow);
-    const auto size = reader.read<std::int32_t>();
+    const auto size = reader.value<std::int32_t>();
     plain.resize(header.rowBytes * rows);
     if (size < 0 || static_cast<std::size_t>(size) > plain.size())
         reader.fail("a block of " + std::to_string(plain.size()) + " bytes is stored in " +
@@ -281,14 +234,14 @@ std::uint32_t readChunk(ExrReader& reader, const Header& header, std::vector<std
 
 CpuImage decodeExr(std::span<const std::uint8_t> bytes, const std::string& name)
 {
-    ExrReader reader(bytes, name);
+    ByteReader reader(bytes, name);
     const Header header = readHeader(reader, name);
     const std::array<int, 4> map = mapChannels(header, reader);
     const std::uint32_t chunkCount =
         (header.height + header.rowsPerChunk() - 1) / header.rowsPerChunk();
     std::vector<std::uint64_t> offsets(chunkCount);
     for (std::uint64_t& offset : offsets)
-        offset = reader.read<std::uint64_t>();
+        offset = reader.value<std::uint64_t>();
 
     CpuImage image(header.width, header.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     std::vector<bool> seen(chunkCount, false);
