@@ -2,18 +2,17 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "tests/support/gpu_fixture.hpp"
 
 namespace strandlight::test {
 
 inline std::filesystem::path vectorFolder()
 {
-    const char* data = std::getenv("STRANDLIGHT_DATA");
-    return std::filesystem::path(data ? data : STRANDLIGHT_SOURCE_DIR "/../shared/data") /
-           "vectors";
+    return std::filesystem::path(dataFolder()) / "vectors";
 }
 
 // Files whose name starts with `prefix`, sorted; empty when the data is not there.

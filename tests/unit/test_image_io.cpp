@@ -1,6 +1,5 @@
 // Pictures survive a round trip; broken ones are refused with one clear error and never half read.
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "engine/base/file.hpp"
 #include "engine/base/image_io.hpp"
 #include "engine/base/log.hpp"
+#include "tests/support/gpu_fixture.hpp"
 
 using namespace strandlight;
 namespace fs = std::filesystem;
@@ -33,13 +33,6 @@ public:
 private:
     fs::path path_;
 };
-
-fs::path dataFolder()
-{
-    const char* folder = std::getenv("STRANDLIGHT_DATA");
-    return folder != nullptr ? fs::path(folder)
-                             : fs::path(STRANDLIGHT_SOURCE_DIR "/../shared/data");
-}
 
 CpuImage makeRamp(std::uint32_t width, std::uint32_t height)
 {
@@ -242,7 +235,7 @@ TEST_CASE("Pictures: reference data loads")
          {Expected{"reference/cornell_lambert_cycles.exr", 320, 240},
           Expected{"env/polyhaven_lobby.exr", 512, 256}, Expected{"env/std_env.hdr", 1500, 750},
           Expected{"env/spruit_sunrise_1k.hdr", 1024, 512}}) {
-        const fs::path path = dataFolder() / e.path;
+        const fs::path path = fs::path(test::dataFolder()) / e.path;
         if (!fs::exists(path)) {
             MESSAGE("skipped, absent: " << e.path);
             continue;
