@@ -45,9 +45,10 @@ void drawOpaque(RenderGraph& graph, PassBuilder& pass, HairBuffers& buffers,
         return;
     const BufferId surface = pass.read(graph.importBuffer(buffers.surface));
     const BufferId lights = pass.read(graph.importBuffer(buffers.lights));
+    const BufferId visibility = pass.read(graph.importBuffer(buffers.visibility));
     const RasterDesc raster{
         .vertex = &kernels::hair_opaque_vert, .fragment = &fragment, .blend = blend};
-    pass.draw(raster, buffers.triangleCount * 3, 1, push, {surface, lights});
+    pass.draw(raster, buffers.triangleCount * 3, 1, push, {surface, lights, visibility});
 }
 
 // What every strand draw reads.
@@ -85,6 +86,21 @@ ImageId addShadowPass(RenderGraph& graph, HairBuffers& buffers, const gpu::HairL
     return map;
 }
 
+// Lets hair darken what is below it.
+void addSurfaceShadowPass(RenderGraph& graph, HairBuffers& buffers, ImageId map,
+                          std::uint32_t light, std::uint32_t shadowSize)
+{
+    PassBuilder pass = graph.addComputePass("hair surface shadow " + std::to_string(light));
+    const BufferId surface = pass.read(graph.importBuffer(buffers.surface));
+    const BufferId table = pass.read(graph.importBuffer(buffers.lights));
+    const BufferId visibility = pass.write(graph.importBuffer(buffers.visibility));
+    pass.sample(map);
+    const std::uint32_t corners = buffers.triangleCount * 3;
+    pass.dispatch(kernels::hair_surface_shadow, {corners, 1, 1},
+                  gpu::HairSurfacePush{corners, light, shadowSize},
+                  {surface, visibility, table, Binding(map, Filter::Nearest)});
+}
+
 } // namespace
 
 BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
@@ -107,6 +123,8 @@ BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
         ImageId map;
         if (shadowed[i])
             map = addShadowPass(graph, buffers, lights[i], i, settings);
+        if (shadowed[i] && buffers.triangleCount > 0 && i < gpu::kHairSurfaceLights)
+            addSurfaceShadowPass(graph, buffers, map, i, settings.shadowSize);
         PassBuilder pass = graph.addComputePass("hair shading " + std::to_string(i));
         const BufferId points = pass.read(graph.importBuffer(buffers.points));
         const BufferId tangents = pass.read(graph.importBuffer(buffers.tangents));

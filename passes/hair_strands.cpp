@@ -91,6 +91,8 @@ HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* o
     buffers.widthScale = float(hair.strandCount()) / float(buffers.strandCount);
     if (opaque && !opaque->triangles.empty()) {
         buffers.surface = Buffer::from(context, surfaceCorners(*opaque), "hair occluders");
+        const std::vector<glm::vec4> all(opaque->triangles.size() * 3, glm::vec4(1.0f));
+        buffers.visibility = Buffer::from(context, all, "hair occluder visibility");
         buffers.triangleCount = std::uint32_t(opaque->triangles.size());
     }
     buffers.lights = Buffer::from(context, lights, "hair lights");

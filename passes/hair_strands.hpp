@@ -20,13 +20,14 @@ namespace strandlight {
 
 struct HairBuffers
 {
-    Buffer points;   // vec4 [points]
-    Buffer tangents; // vec4 [points]
-    Buffer colors;   // vec4 [points]
-    Buffer segments; // uvec2 [segments], of the drawn strands alone
-    Buffer shaded;   // vec4 [points], written by the shading pass
-    Buffer surface;  // vec4 [triangles, 3, 2]; not valid without opaque triangles
-    Buffer lights;   // HairLight [lights]; one zeroed element without any
+    Buffer points;     // vec4 [points]
+    Buffer tangents;   // vec4 [points]
+    Buffer colors;     // vec4 [points]
+    Buffer segments;   // uvec2 [segments], of the drawn strands alone
+    Buffer shaded;     // vec4 [points], written by the shading pass
+    Buffer surface;    // vec4 [triangles, 3, 2]; not valid without opaque triangles
+    Buffer visibility; // vec4 [triangles, 3], 1 until the shading passes; beside surface
+    Buffer lights;     // HairLight [lights]; one zeroed element without any
 
     std::uint32_t pointCount = 0;
     std::uint32_t segmentCount = 0;

@@ -1,4 +1,5 @@
-// Plain diffuse shading of what is behind hair, where no finished picture of it is given. No shadows.
+// Plain diffuse shading of what is behind hair, where no finished picture of it is given. Shadows are
+// looked up at corners.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -9,6 +10,7 @@ layout(push_constant, scalar) uniform Push { HairOpaquePush push; };
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 albedo;
+layout(location = 3) in vec4 lightShares;
 layout(location = 0) out vec4 color; // radiance, 0: no hair
 
 void main()
@@ -17,6 +19,7 @@ void main()
     for (uint i = 0u; i < push.lightCount; ++i) {
         vec3 towards;
         vec3 facing = hairLightIrradiance(lights[i], position, towards);
+        facing *= i < kHairSurfaceLights ? lightShares[i] : 1.0;
         irradiance += facing * max(dot(normalize(normal), towards), 0.0);
     }
     color = vec4(albedo * irradiance / 3.14159265, 0.0);

@@ -5,6 +5,7 @@
 //   shaded   rgba32f [points]    radiance towards the camera, share of the lights that arrives
 //   segments rg32ui  [segments]  first of the segment's two points, strand
 //   surface  rgba32f [opaque triangles, 3, 2]  position, albedo as unorm bytes | unit normal, 0
+//   visibility rgba32f [opaque triangles, 3]   share of lights 0 to 3 that hair lets through
 #ifndef STRANDLIGHT_SHARED_HAIR_TYPES_H
 #define STRANDLIGHT_SHARED_HAIR_TYPES_H
 
@@ -62,6 +63,16 @@ struct HairShadePush
     uint light;       // index; lightCount and more: ambient alone
     uint lightCount;
     uint first;       // 1: starts from the ambient term, 0: adds to `shaded`
+    uint shadowSize;
+};
+
+// Of so many lights, the first ones, hair casts shadows on opaque triangles.
+STRANDLIGHT_CONST(uint) kHairSurfaceLights = 4u;
+
+struct HairSurfacePush
+{
+    uint cornerCount;
+    uint light; // below kHairSurfaceLights
     uint shadowSize;
 };
 

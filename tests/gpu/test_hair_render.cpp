@@ -75,8 +75,11 @@ TEST_CASE("hair: layers and opaque triangles shadow what lies behind them as see
     for (const glm::vec2 p : {glm::vec2(20.0f, 30.0f), glm::vec2(50.0f, 30.0f),
                               glm::vec2(50.0f, 50.0f), glm::vec2(20.0f, 50.0f)})
         scene.vertices.push_back({.position = {p, -20.0f}});
-    scene.triangles = {{0, 1, 2}, {0, 2, 3}};
-    scene.triangleMaterials = {0, 0};
+    for (const glm::vec2 p : {glm::vec2(-30.0f, -8.0f), glm::vec2(-20.0f, -8.0f),
+                              glm::vec2(-20.0f, 8.0f)}) // a triangle behind the layer
+        scene.vertices.push_back({.position = {p, -25.0f}});
+    scene.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}};
+    scene.triangleMaterials = {0, 0, 0};
     scene.materials.push_back({.name = "wall"});
     scene.lights = {{.type = LightType::Directional, .direction = {0.0f, 0.0f, -1.0f}},
                     {.type = LightType::Point, .position = {0.0f, 0.0f, 800.0f}}};
@@ -105,6 +108,12 @@ TEST_CASE("hair: layers and opaque triangles shadow what lies behind them as see
         CHECK(std::abs(values[3].w - 0.5f) <= 0.34f);
         CHECK(values[4].w == 0.0f);
         CHECK(values[5].w == 0.0f);
+        const std::vector<glm::vec4> corners = buffers.visibility.downloadAs<glm::vec4>();
+        REQUIRE(corners.size() == 9);
+        for (std::size_t corner = 0; corner < 6; ++corner)
+            CHECK(corners[corner].x == 1.0f); // the wall does not shadow itself
+        for (std::size_t corner = 6; corner < 9; ++corner)
+            CHECK(std::abs(corners[corner].x - 0.5f) <= 0.15f); // 196 samples: 4 deviations
     }
 }
 
