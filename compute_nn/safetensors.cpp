@@ -59,7 +59,7 @@ Json parseHeader(std::span<const std::uint8_t> bytes, const std::string& path)
         return !tooDeep;
     };
     const auto text = bytes.subspan(8, length);
-    const Json header = Json::parse(text.begin(), text.end(), watchDepth, false);
+    Json header = Json::parse(text.begin(), text.end(), watchDepth, false);
     if (tooDeep || !header.is_object())
         throw FileError(path, "byte 8", "the header is not a JSON object of tensors");
     return header;
