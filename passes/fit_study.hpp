@@ -22,8 +22,8 @@ struct FitStudySettings
 };
 
 // Captures the radiance of a scene at its texels and at points in the middle of four texels, where
-// no fit has looked. Rows: raw images, SH L1, SH L2, fixed-direction SGs, then `modes`. Throws Error on a scene
-// that cannot be captured, Interrupted when the user stops.
+// no fit has looked. Rows: raw images, SH L1, SH L2, fixed-direction SGs, then `modes`. Throws
+// Error on a scene that cannot be captured, Interrupted when the user stops.
 FitReport studyFits(Context& context, const Scene& scene, const FitStudySettings& settings);
 
 // Where a probe lies on the surface: the atlas place in the middle of its four texels. Probes whose

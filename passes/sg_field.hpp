@@ -1,4 +1,5 @@
-// The baked light: spherical gaussians over the atlas, and everything a renderer needs to find them.
+// The baked light: spherical gaussians over the atlas, and everything a renderer needs to find
+// them.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@
 
 namespace strandlight {
 
-// One lobe in the texel's frame (T, B, N): radiance(d) = amplitude * exp(-sharpness/2 |d - axis|^2).
+// One lobe in the texel's frame (T, B, N): radiance(d) = amplitude * exp(-sharpness/2 |d -
+// axis|^2).
 struct SgLobe
 {
     glm::vec3 axis = glm::vec3(0.0f, 0.0f, 1.0f); // unit
@@ -20,7 +22,8 @@ struct SgLobe
     glm::vec3 amplitude = glm::vec3(0.0f);        // W / (sr m^2)
 };
 
-// Lobes of every covered texel. Bilinear interpolation acts on axis (then normalised), ln sharpness and amplitude.
+// Lobes of every covered texel. Bilinear interpolation acts on axis (then normalised), ln sharpness
+// and amplitude.
 struct SgField
 {
     std::uint32_t lobeCount = 0;
@@ -31,23 +34,25 @@ struct SgField
 struct BakeInfo
 {
     std::string scene;
-    std::string fitMode;          // "direct", "cnn", "cnn+refine"
-    std::uint64_t geometryHash = 0; // of triangle positions; rendering another scene with this bake is refused
+    std::string fitMode; // "direct", "cnn", "cnn+refine"
+    std::uint64_t geometryHash =
+        0; // of triangle positions; rendering another scene with this bake is refused
     std::uint64_t environmentHash = 0;
     std::uint32_t lightfieldSize = 0; // directions per side
     std::uint32_t samplesPerDirection = 0;
     std::uint32_t bounces = 0;
     std::uint32_t steps = 0;
     std::uint32_t seed = 0;
-    float rmse = 0.0f;            // light field against its lobes, at texels
+    float rmse = 0.0f; // light field against its lobes, at texels
 };
 
 struct SgBake
 {
     BakeInfo info;
     Atlas atlas;
-    SgField radiance;                    // everything but the distant environment seen directly
-    std::optional<SgField> environment;  // environment radiance times visibility; absent without an environment
+    SgField radiance; // everything but the distant environment seen directly
+    std::optional<SgField>
+        environment; // environment radiance times visibility; absent without an environment
 };
 
 } // namespace strandlight

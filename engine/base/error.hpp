@@ -1,6 +1,6 @@
-// Three classes of error, after Falcor's policy: our own mistakes assert (assert.hpp); input, files, Vulkan and
-// misuse of the API throw one of these, with the values in the text; expected outcomes are return values.
-// Only main and tests catch.
+// Three classes of error, after Falcor's policy: our own mistakes assert (assert.hpp); input,
+// files, Vulkan and misuse of the API throw one of these, with the values in the text; expected
+// outcomes are return values. Only main and tests catch.
 #pragma once
 
 #include <stdexcept>

@@ -44,23 +44,23 @@ struct Material
     std::string name;
     glm::vec4 baseColor = glm::vec4(1.0f);
     float metallic = 1.0f;
-    float roughness = 1.0f;                // perceptual; alpha = roughness^2
-    float specular = 1.0f;                 // KHR_materials_specular factor
+    float roughness = 1.0f; // perceptual; alpha = roughness^2
+    float specular = 1.0f;  // KHR_materials_specular factor
     glm::vec3 specularColor = glm::vec3(1.0f);
-    glm::vec3 emissive = glm::vec3(0.0f);  // W / (sr m^2), strength multiplied in
+    glm::vec3 emissive = glm::vec3(0.0f); // W / (sr m^2), strength multiplied in
     float normalScale = 1.0f;
-    float alphaCutoff = -1.0f;             // < 0: opaque; else alpha mask
+    float alphaCutoff = -1.0f; // < 0: opaque; else alpha mask
     bool doubleSided = false;
-    TextureSlot baseColorTexture;          // sRGB
-    TextureSlot metallicRoughnessTexture;  // linear: G roughness, B metallic
-    TextureSlot normalTexture;             // linear
-    TextureSlot emissiveTexture;           // sRGB
+    TextureSlot baseColorTexture;         // sRGB
+    TextureSlot metallicRoughnessTexture; // linear: G roughness, B metallic
+    TextureSlot normalTexture;            // linear
+    TextureSlot emissiveTexture;          // sRGB
 };
 
 struct Vertex
 {
     glm::vec3 position = glm::vec3(0.0f);
-    glm::vec3 normal = glm::vec3(0.0f, 0.0f, 1.0f);   // unit
+    glm::vec3 normal = glm::vec3(0.0f, 0.0f, 1.0f);        // unit
     glm::vec4 tangent = glm::vec4(1.0f, 0.0f, 0.0f, 1.0f); // for normal maps; w: handedness
     glm::vec2 uv0 = glm::vec2(0.0f);
     glm::vec2 uv1 = glm::vec2(0.0f);
@@ -88,12 +88,13 @@ struct PunctualLight
     glm::vec3 position = glm::vec3(0.0f);
     glm::vec3 direction = glm::vec3(0.0f, 0.0f, -1.0f); // the way the light travels, unit
     glm::vec3 intensity = glm::vec3(1.0f);
-    float range = 0.0f;                                 // 0: infinite
+    float range = 0.0f; // 0: infinite
     float innerConeCos = 1.0f;
     float outerConeCos = 0.70710678f;
 };
 
-// A distant environment: lat-long radiance. Direction +y is row 0, and u = 0.5 + atan2(d.x, -d.z) / (2 pi).
+// A distant environment: lat-long radiance. Direction +y is row 0, and u = 0.5 + atan2(d.x, -d.z) /
+// (2 pi).
 struct Environment
 {
     CpuImage latLong;
@@ -110,7 +111,7 @@ struct Scene
     std::vector<Camera> cameras;
     std::vector<PunctualLight> lights;
     std::optional<Environment> environment;
-    bool hasTexCoord1 = false;                    // every primitive brought TEXCOORD_1
+    bool hasTexCoord1 = false; // every primitive brought TEXCOORD_1
 
     glm::vec3 boundsMin() const;
     glm::vec3 boundsMax() const;
