@@ -19,7 +19,7 @@ struct BakeSettings
     std::uint32_t lightfieldSize = 16;   // directions per side of the hemi-octahedral image
     std::uint32_t lobes = 8;
     std::uint32_t environmentLobes = 8; // for the second set, when the scene has an environment
-    std::uint32_t samplesPerDirection = 4;
+    std::uint32_t samplesPerDirection = 8;
     std::uint32_t bounces = 16;
     std::uint32_t steps = 600; // of the fit
     std::uint32_t seed = 1;
