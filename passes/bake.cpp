@@ -19,8 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kSecondsBetweenSaves = 15.0;  // what a kill -9 may cost at most
-constexpr std::uint64_t kStoredLobeBytes = 14; // fp16: oct axis 4, ln sharpness 2, amplitude 8
+constexpr double kSecondsBetweenSaves = 15.0; // what a kill -9 may cost at most
 
 double secondsSince(Clock::time_point start)
 {
@@ -183,9 +182,6 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
     info.steps = settings.steps;
     info.seed = settings.seed;
     info.rmse = float(numbers.radianceRmse);
-    numbers.bytesPerTexel =
-        kStoredLobeBytes *
-        (bake.radiance.lobeCount + (bake.environment ? bake.environment->lobeCount : 0));
     numbers.peakDeviceBytes = context.peakBytesAllocated();
     if (statistics)
         *statistics = numbers;

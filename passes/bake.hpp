@@ -40,7 +40,6 @@ struct BakeStatistics
     double fitSeconds = 0.0;
     double radianceRmse = 0.0; // light field against its lobes, at texels
     double environmentRmse = 0.0;
-    std::uint64_t bytesPerTexel = 0; // of both sets as stored in fp16
     std::uint64_t peakDeviceBytes = 0;
 };
 
