@@ -216,6 +216,18 @@ std::uint32_t materialOf(const GltfDocument& document, const tinygltf::Primitive
     return static_cast<std::uint32_t>(primitive.material);
 }
 
+// A texture without coordinates would be one stretched texel: refused rather than drawn.
+void checkTextureCoordinates(const GltfDocument& document, const Attributes& attributes,
+                             const Material& material, const std::string& place)
+{
+    for (const TextureSlot* slot : {&material.baseColorTexture, &material.metallicRoughnessTexture,
+                                    &material.normalTexture, &material.emissiveTexture})
+        if (slot->texture >= 0 && (slot->texCoord == 0 ? attributes.uv0 : attributes.uv1).empty())
+            document.fail(place, "material '" + material.name + "' has a texture at TEXCOORD_" +
+                                     std::to_string(slot->texCoord) +
+                                     ", which the primitive does not bring");
+}
+
 } // namespace
 
 void appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& primitive,
@@ -234,6 +246,7 @@ void appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& pr
     const std::vector<glm::uvec3> triangles =
         readTriangles(document, primitive, attributes.count, place, progress);
     const std::uint32_t material = materialOf(document, primitive, scene, place);
+    checkTextureCoordinates(document, attributes, scene.materials[material], place);
     progress.allHaveTexCoord1 = progress.allHaveTexCoord1 && !attributes.uv1.empty();
 
     const Transform transform(node);

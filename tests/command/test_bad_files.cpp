@@ -92,6 +92,10 @@ TEST_CASE("scenes whose content cannot be used")
          [](GltfMaker& m) {
              m.json["images"][0] = {{"uri", "nowhere.png"}};
          }},
+        {"no_uv.glb", "TEXCOORD_0",
+         [](GltfMaker& m) {
+             m.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
+         }},
         {"huge_texture.glb", "60000",
          [](GltfMaker& m) {
              m.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] =
