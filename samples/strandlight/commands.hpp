@@ -14,5 +14,6 @@ Command addFits(CLI::App& parent);
 Command addReport(CLI::App& parent);
 Command addNnCheck(CLI::App& parent);
 Command addHair(CLI::App& parent);
+Command addBench(CLI::App& parent);
 
 } // namespace strandlight::cli

@@ -1,0 +1,59 @@
+// strandlight bench: what its subcommands share. A benchmark is a list of rows, one measurement
+// each, printed as a table and written as JSON and CSV; a row comes after its check has passed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/graph/render_graph.hpp"
+#include "samples/strandlight/options.hpp"
+#include "samples/strandlight/outputs.hpp"
+
+namespace strandlight::cli {
+
+struct BenchOptions
+{
+    DeviceOptions device;
+    std::string json;
+    std::string csv;
+    std::string filter; // part of a row's name; "": all
+    bool quick = false; // smaller cases, fewer runs: shows that it works, not how fast
+};
+void addBenchOptions(CLI::App& app, BenchOptions& options);
+
+// Milliseconds of a number of runs after a warm-up.
+struct Timing
+{
+    double median = 0.0;
+    double minimum = 0.0;
+    std::uint32_t runs = 0;
+};
+Timing timingOf(std::vector<double> milliseconds); // throws Error when empty
+// Runs the graph once to warm up (lavapipe compiles at the first dispatch), then `runs` times; the
+// sum of its passes by the device's clock. Throws Interrupted between runs.
+Timing timeGraph(RenderGraph& graph, std::uint32_t runs);
+
+// Rows are flat JSON objects; columns are their keys in the order of first appearance.
+class BenchReport
+{
+public:
+    // `command`: "bench kernels". Throws FileError when an output cannot be written.
+    BenchReport(const std::string& command, const BenchOptions& options, const Context& context);
+
+    bool wants(const std::string& name) const; // does --filter let this row through?
+    Json& about() { return about_; }           // what the JSON says beside the rows
+    void add(Json row) { rows_.push_back(std::move(row)); }
+    const Json& rows() const { return rows_; }
+    void finish() const; // prints the table, writes --json and --csv; throws Error without rows
+
+private:
+    BenchOptions options_;
+    Json about_;
+    Json rows_ = Json::array();
+};
+
+// Subcommands, one source file each.
+Command addBenchKernels(CLI::App& bench);
+
+} // namespace strandlight::cli

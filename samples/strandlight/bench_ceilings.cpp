@@ -1,0 +1,106 @@
+// The ceilings of the device, measured by kernels that do nothing else.
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "kernels.gen.hpp"
+#include "samples/strandlight/bench_kernels.hpp"
+#include "shaders/shared/bench_types.h"
+
+namespace strandlight::cli {
+
+namespace {
+
+constexpr std::uint32_t kRuns = 9;
+
+KernelMeasurement measureMultiplyAdd(Context& context, bool quick)
+{
+    // One workgroup's worth of work is long against its start; enough groups to fill any device.
+    const std::uint32_t threads = quick ? 1024 : 16384;
+    const gpu::BenchLoopPush push{.turns = quick ? 32u : 128u, .factor = 0.5f, .addend = 1.0f};
+    RenderGraph graph(context);
+    PassBuilder pass = graph.addComputePass("multiply-add");
+    const BufferId result = pass.write(graph.createBuffer("result", threads * 4));
+    pass.dispatch(kernels::bench_madd, {threads, 1, 1}, push, {result});
+    graph.output(result);
+
+    KernelMeasurement m;
+    m.timing = timeGraph(graph, kRuns);
+    m.flops = 2.0 * threads * push.turns * gpu::kBenchUnroll * gpu::kBenchChains;
+    const std::vector<float> values = graph.read<float>(result);
+    std::vector<double> got, wanted;
+    for (std::uint32_t id = 0; id < threads; id += 97) {
+        const double factor = double(push.factor) + (id & 7u) * 1e-6;
+        double sum = 0.0;
+        for (std::uint32_t k = 0; k < gpu::kBenchChains; ++k) {
+            double chain = k;
+            for (std::uint32_t step = 0; step < push.turns * gpu::kBenchUnroll; ++step)
+                chain = chain * factor + double(push.addend);
+            sum += chain;
+        }
+        got.push_back(values[id]);
+        wanted.push_back(sum);
+    }
+    m.error = normError(got, wanted);
+    return m;
+}
+
+KernelMeasurement measureTriad(Context& context, bool quick)
+{
+    // Three buffers of 128 MiB, the most that one binding takes: larger than any cache.
+    const std::uint32_t count = quick ? 1u << 20 : 1u << 25;
+    const float factor = 3.0f;
+    Buffer b(context, count * 4ull, "triad b"), c(context, count * 4ull, "triad c"),
+        a(context, count * 4ull, "triad a");
+    std::vector<float> left(count), right(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        left[i] = float(i % 1021);
+        right[i] = float(i % 257) * 0.25f;
+    }
+    b.upload(std::as_bytes(std::span(left)));
+    c.upload(std::as_bytes(std::span(right)));
+
+    RenderGraph graph(context);
+    const BufferId bId = graph.importBuffer(b), cId = graph.importBuffer(c);
+    PassBuilder pass = graph.addComputePass("triad");
+    pass.read(bId);
+    pass.read(cId);
+    const BufferId result = pass.write(graph.importBuffer(a));
+    pass.dispatch(kernels::bench_triad, {count / gpu::kBenchTriadTile, 1, 1},
+                  gpu::BenchTriadPush{factor}, {bId, cId, result});
+
+    KernelMeasurement m;
+    m.timing = timeGraph(graph, kRuns);
+    m.bytes = 12.0 * count;
+    const std::vector<float> values = a.downloadAs<float>();
+    std::vector<double> got, wanted;
+    for (std::uint32_t i = 0; i < count; i += 1009) {
+        got.push_back(values[i]);
+        wanted.push_back(left[i] + double(factor) * right[i]);
+    }
+    m.error = normError(got, wanted);
+    return m;
+}
+
+} // namespace
+
+double normError(const std::vector<double>& got, const std::vector<double>& wanted)
+{
+    double difference = 0.0, norm = 0.0;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        difference += (got[i] - wanted[i]) * (got[i] - wanted[i]);
+        norm += wanted[i] * wanted[i];
+    }
+    return std::sqrt(difference) / std::max(std::sqrt(norm), 1e-30);
+}
+
+Ceilings measureCeilings(Context& context, const BenchOptions& options)
+{
+    const Ceilings ceilings{measureMultiplyAdd(context, options.quick),
+                            measureTriad(context, options.quick)};
+    requireCheck("ceiling multiply-add", ceilings.multiplyAdd);
+    requireCheck("ceiling triad", ceilings.triad);
+    return ceilings;
+}
+
+} // namespace strandlight::cli

@@ -1,0 +1,73 @@
+// strandlight bench kernels: network kernels checked, timed and held against the device's ceilings.
+#include "samples/strandlight/bench_kernels.hpp"
+
+#include <cstdio>
+#include <memory>
+
+#include "engine/base/error.hpp"
+#include "engine/base/progress.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+Json describe(const std::string& name, const KernelMeasurement& m, const Ceilings& ceilings)
+{
+    Json row = {{"name", name},
+                {"error", m.error},
+                {"ms_median", m.timing.median},
+                {"ms_minimum", m.timing.minimum},
+                {"runs", m.timing.runs}};
+    if (m.flops > 0.0) {
+        const double gflops = m.flops / m.timing.median * 1e-6;
+        row["gflops"] = gflops;
+        row["of_multiply_add"] = gflops / ceilings.gflops();
+    }
+    if (m.bytes > 0.0) {
+        const double gigabytes = m.bytes / m.timing.median * 1e-6;
+        row["gb_per_s"] = gigabytes;
+        row["of_triad"] = gigabytes / ceilings.gigabytes();
+    }
+    return row;
+}
+
+int run(const BenchOptions& o)
+{
+    Context context = openDevice(o.device);
+    BenchReport report("bench kernels", o, context);
+    const Ceilings ceilings = measureCeilings(context, o);
+    report.about()["ceilings"] = {
+        {"multiply_add_gflops", ceilings.gflops()},
+        {"multiply_add", "chains of a*b+c in registers, best run; of_multiply_add is over this"},
+        {"triad_gb_per_s", ceilings.gigabytes()},
+        {"triad", "a = b + s c from memory, 12 bytes an element, best run; of_triad is over this"}};
+    report.add(describe("ceiling multiply-add", ceilings.multiplyAdd, ceilings));
+    report.add(describe("ceiling triad", ceilings.triad, ceilings));
+    report.finish();
+    return 0;
+}
+
+} // namespace
+
+void requireCheck(const std::string& name, const KernelMeasurement& m)
+{
+    if (m.error <= m.tolerance) // false for NaN
+        return;
+    char reason[96];
+    std::snprintf(reason, sizeof reason, ": error %.2e against the CPU twin, at most %.0e", m.error,
+                  m.tolerance);
+    throw Error(name + reason);
+}
+
+Command addBenchKernels(CLI::App& bench)
+{
+    CLI::App* app = bench.add_subcommand(
+        "kernels", "Network kernels against their CPU twins and the device's ceilings");
+    const auto o = std::make_shared<BenchOptions>();
+    addBenchOptions(*app, *o);
+    addExamples(*app, "  strandlight bench kernels --json kernels.json --csv kernels.csv\n"
+                      "  strandlight bench kernels --filter conv");
+    return {app, [o] { return run(*o); }};
+}
+
+} // namespace strandlight::cli

@@ -1,0 +1,45 @@
+// The cases of `strandlight bench kernels`: each is checked against its CPU twin, then timed.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "samples/strandlight/bench.hpp"
+
+namespace strandlight::cli {
+
+// What one case found. `error` is relative to the norm of the sampled outputs of the twin (double).
+struct KernelMeasurement
+{
+    double error = 0.0;
+    double tolerance = 5e-6; // fp32 sums of a thousand products against double: measured below 1e-6
+    Timing timing;
+    double flops = 0.0; // a multiply and an add are two; 0: not counted
+    double bytes = 0.0; // read and written once each; 0: not counted
+};
+
+struct KernelCase
+{
+    std::string name;
+    std::function<KernelMeasurement(Context&, const BenchOptions&)> measure;
+};
+
+// Throws Error, naming the case, when the check of `measurement` has not passed.
+void requireCheck(const std::string& name, const KernelMeasurement& measurement);
+
+// |got - wanted| / |wanted| in the Euclidean norm; NaN anywhere gives NaN.
+double normError(const std::vector<double>& got, const std::vector<double>& wanted);
+
+// What this device reaches where nothing else is in the way: fractions are of these.
+struct Ceilings
+{
+    KernelMeasurement multiplyAdd; // chains in registers, unfused where the device does not fuse
+    KernelMeasurement triad;       // a = b + s c over buffers larger than the caches
+
+    double gflops() const { return multiplyAdd.flops / multiplyAdd.timing.minimum * 1e-6; }
+    double gigabytes() const { return triad.bytes / triad.timing.minimum * 1e-6; } // per second
+};
+Ceilings measureCeilings(Context& context, const BenchOptions& options);
+
+} // namespace strandlight::cli

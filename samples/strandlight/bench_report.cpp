@@ -1,0 +1,154 @@
+// Rows of a benchmark as a table, JSON and CSV; timing of graphs.
+#include <algorithm>
+#include <cstdio>
+
+#include "engine/base/error.hpp"
+#include "engine/base/file.hpp"
+#include "engine/base/progress.hpp"
+#include "samples/strandlight/bench.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+std::vector<std::string> columnsOf(const Json& rows)
+{
+    std::vector<std::string> columns;
+    for (const Json& row : rows)
+        for (const auto& [key, value] : row.items())
+            if (std::find(columns.begin(), columns.end(), key) == columns.end())
+                columns.push_back(key);
+    return columns;
+}
+
+// "" where the row has no such value; four digits, which is more than a timing repeats.
+std::string cellText(const Json& row, const std::string& column)
+{
+    const auto value = row.find(column);
+    if (value == row.end() || value->is_null())
+        return "";
+    if (value->is_string())
+        return value->get<std::string>();
+    if (!value->is_number_float())
+        return value->dump();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value->get<double>());
+    return text;
+}
+
+// RFC 4180: quotes around what holds a comma, a quote or a line end.
+std::string csvCell(const Json& row, const std::string& column)
+{
+    const auto value = row.find(column);
+    if (value == row.end() || value->is_null())
+        return "";
+    const std::string text = value->is_string() ? value->get<std::string>() : value->dump();
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char c : text)
+        quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string csvOf(const Json& rows)
+{
+    const std::vector<std::string> columns = columnsOf(rows);
+    std::string text;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        text += (i ? "," : "") + columns[i];
+    for (const Json& row : rows) {
+        text += '\n';
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            text += (i ? "," : "") + csvCell(row, columns[i]);
+    }
+    return text + '\n';
+}
+
+void print(const Json& rows)
+{
+    std::vector<std::string> lines(rows.size() + 1);
+    for (const std::string& column : columnsOf(rows)) {
+        std::vector<std::string> cells = {column};
+        std::size_t width = column.size();
+        for (const Json& row : rows) {
+            cells.push_back(cellText(row, column));
+            width = std::max(width, cells.back().size());
+        }
+        const bool leading = lines[0].empty(); // the name: to the left; numbers: to the right
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const std::string space(width - cells[i].size(), ' ');
+            lines[i] += leading ? cells[i] + space : "  " + space + cells[i];
+        }
+    }
+    for (const std::string& line : lines)
+        std::printf("%s\n", line.c_str());
+}
+
+} // namespace
+
+void addBenchOptions(CLI::App& app, BenchOptions& options)
+{
+    app.add_option("--filter", options.filter, "Only rows whose name holds this")
+        ->type_name("NAME");
+    app.add_flag("--quick", options.quick, "Small cases, few runs: a trial, not a measurement");
+    addJsonOption(app, options.json);
+    app.add_option("--csv", options.csv, "The rows alone")->type_name("FILE");
+    addDeviceOptions(app, options.device);
+}
+
+Timing timingOf(std::vector<double> milliseconds)
+{
+    if (milliseconds.empty())
+        throw Error("bench: no run was timed");
+    std::sort(milliseconds.begin(), milliseconds.end());
+    const std::size_t half = milliseconds.size() / 2;
+    const double median = milliseconds.size() % 2 != 0
+                              ? milliseconds[half]
+                              : 0.5 * (milliseconds[half - 1] + milliseconds[half]);
+    return {median, milliseconds.front(), std::uint32_t(milliseconds.size())};
+}
+
+Timing timeGraph(RenderGraph& graph, std::uint32_t runs)
+{
+    graph.setTimings(true);
+    graph.execute();
+    std::vector<double> milliseconds;
+    for (std::uint32_t i = 0; i < runs; ++i) {
+        throwIfInterrupted();
+        graph.execute();
+        double sum = 0.0;
+        for (const PassTiming& pass : graph.timings())
+            sum += pass.milliseconds;
+        milliseconds.push_back(sum);
+    }
+    return timingOf(std::move(milliseconds));
+}
+
+BenchReport::BenchReport(const std::string& command, const BenchOptions& options,
+                         const Context& context)
+    : options_(options), about_(describeRun(command, &context))
+{
+    requireOutput(options.json, {".json"});
+    requireOutput(options.csv, {".csv"});
+    about_["settings"] = {{"quick", options.quick}, {"filter", options.filter}};
+}
+
+bool BenchReport::wants(const std::string& name) const
+{
+    return name.find(options_.filter) != std::string::npos;
+}
+
+void BenchReport::finish() const
+{
+    if (rows_.empty())
+        throw Error("--filter: no row's name holds '" + options_.filter + "'");
+    print(rows_);
+    Json json = about_;
+    json["rows"] = rows_;
+    writeJson(options_.json, json);
+    if (!options_.csv.empty())
+        writeFileAtomically(options_.csv, csvOf(rows_));
+}
+
+} // namespace strandlight::cli
