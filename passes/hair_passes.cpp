@@ -173,9 +173,11 @@ HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, Buffe
     ids.depth = pass.depth(ids.depth, {false, glm::vec4(1.0f)});
     const StrandIds strands = readStrands(graph, pass, buffers);
     pass.read(shaded);
+    const KernelBlob& plain =
+        settings.alphaToCoverage ? kernels::hair_alpha_frag : kernels::hair_color_frag;
     const RasterDesc raster{.vertex = &kernels::hair_strands_vert,
-                            .fragment = wantFeatures ? &kernels::hair_features_frag
-                                                     : &kernels::hair_color_frag};
+                            .fragment = wantFeatures ? &kernels::hair_features_frag : &plain,
+                            .alphaToCoverage = settings.alphaToCoverage && !wantFeatures};
     pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
               {strands.points, strands.tangents, strands.segments, shaded});
     return ids;

@@ -34,6 +34,7 @@ struct HairRenderSettings
     bool shadows = true;          // lights' shadow maps of hair and opaque geometry
     std::uint32_t shadowSize = 1024; // texels a side, four samples each
     bool alphaCorrection = false;    // scale the noisy hair to its exact coverage (Enderton, 3.3)
+    bool alphaToCoverage = false;    // the device's own masks, which depend on alpha alone
     bool exactCoverage = false;      // fill HairFrame::exactTransmittance
 
     float roughness = 0.3f;               // longitudinal, in [0.05, 1] (Chiang 2016)

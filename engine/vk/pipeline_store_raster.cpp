@@ -59,8 +59,9 @@ VkPipelineColorBlendAttachmentState blendOf(Blend mode)
 const Pipeline& PipelineStore::raster(const RasterDesc& desc, const RasterTargets& targets)
 {
     RasterKey key{desc.vertex, desc.fragment, desc.constants, targets};
-    key.state.insert(key.state.end(), {std::uint32_t(desc.topology), desc.depthTest,
-                                       desc.depthWrite, desc.cullBack, std::uint32_t(desc.blend)});
+    key.state.insert(key.state.end(),
+                     {std::uint32_t(desc.topology), desc.depthTest, desc.depthWrite, desc.cullBack,
+                      std::uint32_t(desc.blend), desc.alphaToCoverage});
     if (const auto found = raster_.find(key); found != raster_.end())
         return found->second;
     Pipeline pipeline;
@@ -114,6 +115,7 @@ void PipelineStore::createRaster(Pipeline& pipeline, const RasterDesc& desc,
     VkPipelineMultisampleStateCreateInfo multisample{
         VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
     multisample.rasterizationSamples = VkSampleCountFlagBits(targets.samples);
+    multisample.alphaToCoverageEnable = desc.alphaToCoverage;
     VkPipelineDepthStencilStateCreateInfo depth{
         VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
     depth.depthTestEnable = targets.depth && desc.depthTest;

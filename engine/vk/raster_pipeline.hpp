@@ -30,6 +30,7 @@ struct RasterDesc
     bool depthWrite = true;
     bool cullBack = false;
     Blend blend = Blend::None;
+    bool alphaToCoverage = false; // the first colour's alpha decides how many samples are written
     std::vector<std::uint32_t> constants; // specialisation constants 0, 1, 2, ... of both stages
 };
 

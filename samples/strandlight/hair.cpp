@@ -169,10 +169,11 @@ Command addHairRender(CLI::App& parent)
     addPictureOptions(*app, *o);
     addNumber(*app, "--samples", o->samples, "Per pixel, a multiple of 4", 4u, kMostSamples);
     app->add_option("--filter", o->filter,
-                    "average: of the samples; coverage: scaled to the exact coverage as well")
+                    "average: of the samples; coverage: scaled to the exact coverage as well; "
+                    "a2c: the device's alpha to coverage instead of random masks")
         ->type_name("FILTER")
         ->capture_default_str()
-        ->check(CLI::IsMember({"average", "coverage"}));
+        ->check(CLI::IsMember({"average", "coverage", "a2c"}));
     addNumber(*app, "--frame", o->settings.frameIndex, "Another frame has other noise", 0u,
               1u << 24);
     app->add_option("--lod", o->lod,
@@ -184,6 +185,7 @@ Command addHairRender(CLI::App& parent)
     return {app, [o] {
                 o->settings.frames = framesOf(o->samples, "--samples");
                 o->settings.alphaCorrection = o->filter == "coverage";
+                o->settings.alphaToCoverage = o->filter == "a2c";
                 o->settings.lod = parseLod(o->lod);
                 return run("hair render", *o);
             }};

@@ -5,7 +5,7 @@
 #include "shared/hair_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2DMS color; // radiance, 1 where hair
+layout(binding = 0) uniform sampler2DMS color; // radiance, above 0 where hair
 layout(binding = 1, rgba32f) uniform image2D hair;
 layout(binding = 2, rgba32f) uniform image2D behind;
 layout(push_constant, scalar) uniform Push { HairResolvePush push; };
@@ -20,8 +20,9 @@ void main()
     vec4 open = vec4(0.0);
     for (int s = 0; s < 4; ++s) {
         vec4 value = texelFetch(color, pixel, s);
-        covered.rgb += value.rgb * value.a;
-        open += vec4(value.rgb * (1.0 - value.a), 1.0 - value.a);
+        float strand = value.a > 0.0 ? 1.0 : 0.0; // alpha to coverage leaves the strand's alpha
+        covered.rgb += value.rgb * strand;
+        open += vec4(value.rgb, 1.0) * (1.0 - strand);
     }
     float weight = 0.25 * push.weight;
     imageStore(hair, pixel, imageLoad(hair, pixel) + weight * vec4(covered.rgb, open.w));

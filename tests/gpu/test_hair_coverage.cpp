@@ -66,6 +66,25 @@ TEST_CASE("hair: mean transmittance of a layer and of stacked layers")
             check(alpha, count);
 }
 
+TEST_CASE("hair: alpha to coverage gives stacked layers the same samples")
+{
+    constexpr std::uint32_t kSide = 32;
+    HairRenderSettings settings = plainSettings(kSide);
+    settings.alphaToCoverage = true;
+    const auto transmittance = [&](float alpha, std::uint32_t count) {
+        settings.alpha = alpha;
+        return meanTransmittance(renderHair(test::context(), layers(count, float(kSide)), nullptr,
+                                            pixelCamera(kSide), settings)
+                                     .hair);
+    };
+    CHECK(transmittance(0.0f, 1) == 1.0);
+    CHECK(transmittance(1.0f, 1) == 0.0);
+    // How alpha becomes a mask is the device's business, but within one sample of it.
+    CHECK(std::abs(transmittance(0.5f, 1) - 0.5) <= 0.25);
+    // What random masks are for: four layers of 1/2 let 1/16 through.
+    CHECK(transmittance(0.5f, 4) == transmittance(0.5f, 1));
+}
+
 TEST_CASE("hair: expected coverage of thin strands at 16 angles")
 {
     struct Case
