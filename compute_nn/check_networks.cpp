@@ -60,7 +60,7 @@ void checkSgMixture(Context& context, const VectorFile& file, CheckReport& repor
 
 void checkUNet(Context& context, const VectorFile& file, CheckReport& report)
 {
-    const UNetDesc net;
+    const UNetDesc net; // the defaults are the network of these files
     const TensorDesc xDesc = file.desc("x");
     net.check(xDesc);
     const TensorDesc yDesc{xDesc.n, net.out, xDesc.h, xDesc.w};

@@ -37,20 +37,44 @@ ParameterLayout EncoderDesc::parameters() const
 ParameterLayout UNetDesc::parameters() const
 {
     ParameterLayout layout;
-    addConv(layout, "enc0", enc0());
-    addConv(layout, "enc1", enc1());
-    addConv(layout, "enc2", enc2());
-    addConvTranspose(layout, "dec1", dec1());
-    addConvTranspose(layout, "dec0", dec0());
+    for (std::uint32_t l = head > 0 ? 0 : 1; l <= levels(); ++l)
+        addConv(layout, "enc" + std::to_string(l), encoder(l));
+    for (std::uint32_t l = levels(); l-- > 0;)
+        addConvTranspose(layout, "dec" + std::to_string(l), decoder(l));
     addConv(layout, "out", last());
     return layout;
 }
 
 void UNetDesc::check(const TensorDesc& x) const
 {
-    if (x.c != in || x.n == 0 || x.h == 0 || x.w == 0 || x.h % 4 != 0 || x.w % 4 != 0)
+    if (down.empty() || down.size() != up.size() || down.size() > 8 ||
+        (upKernel != 2 && upKernel != 4))
+        throw Error("U-Net: " + std::to_string(down.size()) + " levels down, " +
+                    std::to_string(up.size()) + " up, upward kernels of " +
+                    std::to_string(upKernel) + " are no network");
+    const std::uint32_t multiple = 1u << levels();
+    if (x.c != in || x.n == 0 || x.h == 0 || x.w == 0 || x.h % multiple != 0 || x.w % multiple != 0)
         throw Error("U-Net: the input " + shapeText(x) + " is not [N," + std::to_string(in) +
-                    ",H,W] with H and W multiples of 4");
+                    ",H,W] with H and W multiples of " + std::to_string(multiple));
+}
+
+UNetDesc hairUNet(HairUNetSize size)
+{
+    UNetDesc net{.in = 25, .out = 12, .head = 0, .down = {32, 48, 64}, .up = {48, 32, 16}};
+    if (size == HairUNetSize::Small) {
+        net.down = {16, 24, 32};
+        net.up = {24, 16, 16};
+    }
+    if (size == HairUNetSize::Large) {
+        net.down = {48, 64, 96};
+        net.up = {64, 48, 16};
+    }
+    return net;
+}
+
+UNetDesc benchmarkUNet()
+{
+    return {.head = 16, .down = {16, 32, 64, 64}, .up = {64, 32, 16, 16}, .upKernel = 4};
 }
 
 } // namespace strandlight

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "compute_nn/conv_desc.hpp"
 #include "compute_nn/parameter_layout.hpp"
@@ -42,24 +43,72 @@ struct EncoderDesc
     ParameterLayout parameters() const;
 };
 
-// Filter: image [N,24,H,W] -> [N,3,H,W]; H and W are multiples of 4.
-// Ronneberger, Fischer, Brox. U-Net. 2015; sizes after Currius, Assarsson, Sintorn 2022 (24 inputs,
-// 3 outputs).
+// Filter: image [N,in,H,W] -> [N,out,H,W]; H and W are multiples of 2^levels.
+// Ronneberger, Fischer, Brox. U-Net. 2015
+// Level 0 has full size, every next one half of it. Going down, level l makes its skip; going up it
+// makes `up`, and the next layer reads both, [up, skip]. The coarsest level has its skip alone.
+// The defaults are the sizes of Currius, Assarsson, Sintorn 2022 (24 inputs, 3 outputs).
 struct UNetDesc
 {
     std::uint32_t in = 24;
     std::uint32_t out = 3;
-    std::array<std::uint32_t, 3> channels = {16, 32, 48}; // full, half, quarter size
-    float slope = 0.1f;
+    std::uint32_t head = 16; // channels of a 3x3 convolution at full size; 0: x is its own skip
+    std::vector<std::uint32_t> down = {32, 48}; // of the 3x3 convolutions of stride 2
+    std::vector<std::uint32_t> up = {32, 16};   // of the transposed ones, from the coarsest on
+    std::uint32_t upKernel = 2; // 2: 2x2 without padding, 4: 4x4 with padding 1; stride 2
+    float slope = 0.1f;         // of the leaky relu after every layer but the last
 
-    Conv2dDesc enc0() const { return {.in = in, .out = channels[0]}; }
-    Conv2dDesc enc1() const { return {.in = channels[0], .out = channels[1], .stride = {2, 2}}; }
-    Conv2dDesc enc2() const { return {.in = channels[1], .out = channels[2], .stride = {2, 2}}; }
-    ConvTranspose2dDesc dec1() const { return {.in = channels[2], .out = channels[1]}; }
-    ConvTranspose2dDesc dec0() const { return {.in = 2 * channels[1], .out = channels[0]}; }
-    Conv2dDesc last() const { return {.in = 2 * channels[0], .out = out}; }
+    std::uint32_t levels() const { return std::uint32_t(down.size()); } // below full size
+    std::uint32_t skipChannels(std::uint32_t level) const
+    {
+        return level > 0 ? down[level - 1] : head > 0 ? head : in;
+    }
+    std::uint32_t upChannels(std::uint32_t level) const // 0 at the coarsest level
+    {
+        return level < levels() ? up[levels() - 1 - level] : 0;
+    }
+    std::uint32_t channels(std::uint32_t level) const // of [up, skip]
+    {
+        return upChannels(level) + skipChannels(level);
+    }
+    TensorDesc level(std::uint32_t index, const TensorDesc& x) const // shape of [up, skip]
+    {
+        return {x.n, channels(index), x.h >> index, x.w >> index};
+    }
+
+    Conv2dDesc encoder(std::uint32_t level) const // makes the skip of that level; 0: the head
+    {
+        if (level == 0)
+            return {.in = in, .out = head};
+        return {.in = skipChannels(level - 1), .out = skipChannels(level), .stride = {2, 2}};
+    }
+    ConvTranspose2dDesc decoder(std::uint32_t level) const // makes `up` of that level
+    {
+        const std::uint32_t padding = upKernel / 2 - 1;
+        return {.in = channels(level + 1),
+                .out = upChannels(level),
+                .kernel = {upKernel, upKernel},
+                .padding = {padding, padding}};
+    }
+    Conv2dDesc last() const { return {.in = channels(0), .out = out}; }
+    // enc0 (the head), enc1, ..., then the decoder from the coarsest to dec0, then out.
     ParameterLayout parameters() const;
-    void check(const TensorDesc& x) const; // throws Error when x is no input of this network
+    // Throws Error when x is no input of this network, or this is no network.
+    void check(const TensorDesc& x) const;
 };
+
+enum class HairUNetSize : std::uint32_t
+{
+    Small,
+    Medium,
+    Large
+};
+
+// The hair filter: 25 planes of samples -> brightness, illumination, transmittance and the nine
+// logits of a kernel (passes/hair_filter.hpp). No head: the planes themselves are the last skip.
+UNetDesc hairUNet(HairUNetSize size = HairUNetSize::Medium);
+
+// A network to time kernels with: four levels, 4x4 transposed kernels, 24 planes -> 3.
+UNetDesc benchmarkUNet();
 
 } // namespace strandlight

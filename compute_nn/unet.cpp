@@ -1,5 +1,8 @@
 #include "compute_nn/unet.hpp"
 
+#include <string>
+
+#include "compute_nn/activation.hpp"
 #include "compute_nn/adam.hpp"
 #include "compute_nn/conv2d.hpp"
 #include "compute_nn/conv_transpose2d.hpp"
@@ -8,106 +11,145 @@ namespace strandlight {
 
 namespace {
 
-// The two halves of a concatenation [up, skip].
-TensorId upOf(const TensorId& both)
+std::string layerName(const char* kind, std::uint32_t level)
 {
-    return channelRange(both, 0, both.desc.c / 2);
+    return kind + std::to_string(level);
 }
-TensorId skipOf(const TensorId& both)
+
+// The two parts of a level, [up, skip].
+TensorId upOf(const UNetDesc& net, const std::vector<TensorId>& levels, std::uint32_t level)
 {
-    return channelRange(both, both.desc.c / 2, both.desc.c / 2);
+    return channelRange(levels[level], 0, net.upChannels(level));
+}
+TensorId skipOf(const UNetDesc& net, const std::vector<TensorId>& levels, std::uint32_t level)
+{
+    return channelRange(levels[level], net.upChannels(level), net.skipChannels(level));
+}
+
+void written(TensorId& level, const TensorId& part)
+{
+    level = level.as(part.buffer);
+}
+
+bool isRangeOfLevel0(const UNetDesc& net, const TensorId& x)
+{
+    return x.firstChannel == net.upChannels(0) && x.bufferChannels == net.channels(0);
+}
+
+// Level 0 of a network without a head, with x as its skip.
+TensorId levelOfInput(RenderGraph& graph, const UNetDesc& net, const TensorId& x)
+{
+    TensorId level{x.buffer, net.level(0, x.desc), 0, net.channels(0)};
+    if (isRangeOfLevel0(net, x))
+        return level;
+    const TensorId room = createUNetInput(graph, net, x.desc);
+    written(level, activationForward(graph, "input to level 0", Activation::none(), x, room));
+    return level;
 }
 
 } // namespace
+
+TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x)
+{
+    net.check(x);
+    if (net.head > 0)
+        return createTensor(graph, "unet input", x);
+    const TensorId level = createTensor(graph, "level 0", net.level(0, x));
+    return channelRange(level, net.upChannels(0), net.in);
+}
 
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
                        const TensorId& x)
 {
     net.check(x.desc);
     const Activation leaky = Activation::leakyRelu(net.slope);
-    const TensorDesc e0 = net.enc0().output(x.desc), e1 = net.enc1().output(e0);
     UNetValues v;
+    std::vector<TensorId>& f = v.levels;
     v.x = x;
-    v.cat0 = createTensor(graph, "cat0", {e0.n, 2 * e0.c, e0.h, e0.w});
-    v.cat1 = createTensor(graph, "cat1", {e1.n, 2 * e1.c, e1.h, e1.w});
-    v.enc2 = createTensor(graph, "enc2", net.enc2().output(e1));
-    v.y = createTensor(graph, "y", net.last().output(v.cat0.desc));
-    const auto weights = [&](const char* layer) { return parameters.weights(layer); };
+    for (std::uint32_t l = 0; l <= net.levels(); ++l)
+        f.push_back(l == 0 && net.head == 0
+                        ? levelOfInput(graph, net, x)
+                        : createTensor(graph, layerName("level ", l), net.level(l, x.desc)));
 
     // Down.
-    v.cat0 = v.cat0.as(
-        conv2dForward(graph, "enc0", net.enc0(), x, weights("enc0"), skipOf(v.cat0), leaky).buffer);
-    v.cat1 = v.cat1.as(conv2dForward(graph, "enc1", net.enc1(), skipOf(v.cat0), weights("enc1"),
-                                     skipOf(v.cat1), leaky)
-                           .buffer);
-    v.enc2 =
-        conv2dForward(graph, "enc2", net.enc2(), skipOf(v.cat1), weights("enc2"), v.enc2, leaky);
+    if (net.head > 0)
+        written(f[0], conv2dForward(graph, "enc0", net.encoder(0), x, parameters.weights("enc0"),
+                                    skipOf(net, f, 0), leaky));
+    for (std::uint32_t l = 1; l <= net.levels(); ++l) {
+        const std::string name = layerName("enc", l);
+        written(f[l], conv2dForward(graph, name, net.encoder(l), skipOf(net, f, l - 1),
+                                    parameters.weights(name), skipOf(net, f, l), leaky));
+    }
     // Up.
-    v.cat1 = v.cat1.as(convTranspose2dForward(graph, "dec1", net.dec1(), v.enc2, weights("dec1"),
-                                              upOf(v.cat1), leaky)
-                           .buffer);
-    v.cat0 = v.cat0.as(convTranspose2dForward(graph, "dec0", net.dec0(), v.cat1, weights("dec0"),
-                                              upOf(v.cat0), leaky)
-                           .buffer);
-    v.y = conv2dForward(graph, "out", net.last(), v.cat0, weights("out"), v.y);
+    for (std::uint32_t l = net.levels(); l-- > 0;) {
+        const std::string name = layerName("dec", l);
+        written(f[l], convTranspose2dForward(graph, name, net.decoder(l), f[l + 1],
+                                             parameters.weights(name), upOf(net, f, l), leaky));
+    }
+    v.y = createTensor(graph, "y", net.last().output(f[0].desc));
+    v.y = conv2dForward(graph, "out", net.last(), f[0], parameters.weights("out"), v.y);
     return v;
 }
 
 void unetBackward(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,
                   const UNetValues& v, const TensorId& dY)
 {
-    const auto weights = [&](const char* layer) { return parameters.weights(layer); };
-    const auto gradients = [&](const char* layer) { return parameters.gradients(layer); };
-    // Gradients before the activation (dZ), of both halves of each concatenation. The decoder's
-    // half has one reader, so it is finished when that reader's data gradient is; the skip's half
-    // gets a second part from the encoder below it, and only then goes back through the activation.
-    TensorId dCat0 = createTensor(graph, "d cat0", v.cat0.desc);
-    TensorId dCat1 = createTensor(graph, "d cat1", v.cat1.desc);
-    TensorId dEnc2 = createTensor(graph, "d enc2", v.enc2.desc);
-    const auto up = [&](const TensorId& cat) {
-        return BackwardEpilogue{.activated = upOf(cat), .slope = net.slope};
+    // d[l]: gradients before the activation (dZ) of both parts of a level. `up` has one reader, so
+    // it is finished when that reader's data gradient is. So is the coarsest skip; any other gets a
+    // second part from the encoder below it, and only then goes back through the activation.
+    const std::vector<TensorId>& f = v.levels;
+    std::vector<TensorId> d;
+    for (std::uint32_t l = 0; l <= net.levels(); ++l) {
+        TensorDesc desc = f[l].desc;
+        if (l == 0 && net.head == 0) // x needs no gradient
+            desc.c = net.upChannels(0);
+        d.push_back(createTensor(graph, layerName("d level ", l), desc));
+    }
+    const auto through = [&](const TensorId& activated) {
+        return BackwardEpilogue{.activated = activated, .slope = net.slope};
     };
-    const auto skipFirstPart = [&](const TensorId& cat) {
-        return BackwardEpilogue{.firstInput = cat.desc.c / 2};
+    // From the layer that reads both parts of level l.
+    const auto intoLevel = [&](std::uint32_t l, const std::string& name, const auto& backwardInput,
+                               const auto& desc, const TensorId& dZ) {
+        const LayerWeights w = parameters.weights(name);
+        if (l == net.levels()) {
+            written(d[l], backwardInput(graph, name + " dX", desc, dZ, w, d[l], through(f[l])));
+            return;
+        }
+        written(d[l], backwardInput(graph, name + " dUp", desc, dZ, w, upOf(net, d, l),
+                                    through(upOf(net, f, l))));
+        if (l > 0 || net.head > 0)
+            written(d[l], backwardInput(graph, name + " dSkip", desc, dZ, w, skipOf(net, d, l),
+                                        {.firstInput = net.upChannels(l)}));
     };
-    const auto skipSecondPart = [&](const TensorId& cat) {
-        return BackwardEpilogue{.accumulate = true, .activated = skipOf(cat), .slope = net.slope};
-    };
-    const auto after = [](TensorId& cat, const TensorId& written) { cat = cat.as(written.buffer); };
-
-    const Conv2dDesc out = net.last();
-    parameters.gradient = conv2dBackwardWeight(graph, "out dW", out, v.cat0, dY, gradients("out"));
-    after(dCat0,
-          conv2dBackwardInput(graph, "out dUp", out, dY, weights("out"), upOf(dCat0), up(v.cat0)));
-    after(dCat0, conv2dBackwardInput(graph, "out dSkip", out, dY, weights("out"), skipOf(dCat0),
-                                     skipFirstPart(v.cat0)));
-
-    const ConvTranspose2dDesc dec0 = net.dec0(), dec1 = net.dec1();
-    parameters.gradient = convTranspose2dBackwardWeight(graph, "dec0 dW", dec0, v.cat1, upOf(dCat0),
-                                                        gradients("dec0"));
-    after(dCat1, convTranspose2dBackwardInput(graph, "dec0 dUp", dec0, upOf(dCat0), weights("dec0"),
-                                              upOf(dCat1), up(v.cat1)));
-    after(dCat1,
-          convTranspose2dBackwardInput(graph, "dec0 dSkip", dec0, upOf(dCat0), weights("dec0"),
-                                       skipOf(dCat1), skipFirstPart(v.cat1)));
-
-    parameters.gradient = convTranspose2dBackwardWeight(graph, "dec1 dW", dec1, v.enc2, upOf(dCat1),
-                                                        gradients("dec1"));
-    dEnc2 = convTranspose2dBackwardInput(graph, "dec1 dX", dec1, upOf(dCat1), weights("dec1"),
-                                         dEnc2, {.activated = v.enc2, .slope = net.slope});
-
-    parameters.gradient = conv2dBackwardWeight(graph, "enc2 dW", net.enc2(), skipOf(v.cat1), dEnc2,
-                                               gradients("enc2"));
-    after(dCat1, conv2dBackwardInput(graph, "enc2 dX", net.enc2(), dEnc2, weights("enc2"),
-                                     skipOf(dCat1), skipSecondPart(v.cat1)));
-
-    parameters.gradient = conv2dBackwardWeight(graph, "enc1 dW", net.enc1(), skipOf(v.cat0),
-                                               skipOf(dCat1), gradients("enc1"));
-    after(dCat0, conv2dBackwardInput(graph, "enc1 dX", net.enc1(), skipOf(dCat1), weights("enc1"),
-                                     skipOf(dCat0), skipSecondPart(v.cat0)));
 
     parameters.gradient =
-        conv2dBackwardWeight(graph, "enc0 dW", net.enc0(), v.x, skipOf(dCat0), gradients("enc0"));
+        conv2dBackwardWeight(graph, "out dW", net.last(), f[0], dY, parameters.gradients("out"));
+    intoLevel(0, "out", conv2dBackwardInput, net.last(), dY);
+    for (std::uint32_t l = 0; l < net.levels(); ++l) {
+        const std::string name = layerName("dec", l);
+        const TensorId dUp = upOf(net, d, l);
+        parameters.gradient = convTranspose2dBackwardWeight(
+            graph, name + " dW", net.decoder(l), f[l + 1], dUp, parameters.gradients(name));
+        intoLevel(l + 1, name, convTranspose2dBackwardInput, net.decoder(l), dUp);
+    }
+    for (std::uint32_t l = net.levels(); l > 0; --l) {
+        const std::string name = layerName("enc", l);
+        const TensorId dSkip = skipOf(net, d, l);
+        parameters.gradient =
+            conv2dBackwardWeight(graph, name + " dW", net.encoder(l), skipOf(net, f, l - 1), dSkip,
+                                 parameters.gradients(name));
+        if (l == 1 && net.head == 0)
+            continue;
+        BackwardEpilogue secondPart = through(skipOf(net, f, l - 1));
+        secondPart.accumulate = true;
+        written(d[l - 1],
+                conv2dBackwardInput(graph, name + " dX", net.encoder(l), dSkip,
+                                    parameters.weights(name), skipOf(net, d, l - 1), secondPart));
+    }
+    if (net.head > 0)
+        parameters.gradient = conv2dBackwardWeight(graph, "enc0 dW", net.encoder(0), v.x,
+                                                   skipOf(net, d, 0), parameters.gradients("enc0"));
 }
 
 UNetStep addUNetTrainingStep(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,

@@ -1,7 +1,9 @@
-// The U-Net filter: twenty-four planes in, three out.
+// The U-Net filter: planes of an image in, planes out, any number of levels.
 // Ronneberger, Fischer, Brox. U-Net. 2015
 // Currius, Assarsson, Sintorn. Real-Time Hair Filtering with Convolutional Neural Networks. 2022
 #pragma once
+
+#include <vector>
 
 #include "compute_nn/adam_settings.hpp"
 #include "compute_nn/loss.hpp"
@@ -10,22 +12,25 @@
 
 namespace strandlight {
 
-// What the forward pass leaves for the backward pass. Skip connections are channel ranges: [up,
-// skip] in one buffer.
+// What the forward pass leaves for the backward pass. Skip connections are channel ranges of one
+// buffer a level, so concatenation copies nothing.
 struct UNetValues
 {
-    TensorId x;    // [N,24,H,W]
-    TensorId cat0; // [N,16+16,H,W]: dec0, enc0
-    TensorId cat1; // [N,32+32,H/2,W/2]: dec1, enc1
-    TensorId enc2; // [N,48,H/4,W/4]
-    TensorId y;    // [N,3,H,W]
+    TensorId x;                   // [N,in,H,W], as it was given
+    std::vector<TensorId> levels; // [N,up+skip,H/2^l,W/2^l]
+    TensorId y;                   // [N,out,H,W]
 };
 
-// x [N,24,H,W], H and W multiples of 4 -> y [N,3,H,W]. Throws Error for other shapes.
+// Where a pass writes the network's input [N,in,H,W]. Of a network without a head it is a range of
+// level 0: the input needs no copy to be concatenated. Throws Error for shapes that do not fit.
+TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x);
+
+// x [N,in,H,W] -> y [N,out,H,W]. Any tensor may be x; without a head, one that createUNetInput did
+// not make is copied once. Throws Error for shapes that do not fit.
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
                        const TensorId& x);
 
-// dY [N,3,H,W] -> accumulates into the parameters' gradients.
+// dY [N,out,H,W] -> accumulates into the parameters' gradients. x gets none.
 void unetBackward(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,
                   const UNetValues& values, const TensorId& dY);
 

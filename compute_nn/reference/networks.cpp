@@ -117,32 +117,44 @@ NetworkResult<T> unet(const UNetDesc& net, std::span<const T> parameters, const 
     const Weights<T> w{layout, parameters, result.gradient};
     const Activation leaky = Activation::leakyRelu(net.slope);
 
+    const std::uint32_t bottom = net.levels();
+    const auto enc = [](std::uint32_t l) { return "enc" + std::to_string(l); };
+    const auto dec = [](std::uint32_t l) { return "dec" + std::to_string(l); };
     Node<T> image(xDesc);
     image.x.assign(x.begin(), x.end());
-    Node<T> e0(net.enc0().output(xDesc)), e1(net.enc1().output(e0.desc)),
-        e2(net.enc2().output(e1.desc));
-    forward(w, "enc0", net.enc0(), image, leaky, e0);
-    forward(w, "enc1", net.enc1(), e0, leaky, e1);
-    forward(w, "enc2", net.enc2(), e1, leaky, e2);
-    Node<T> d1(net.dec1().output(e2.desc));
-    forward(w, "dec1", net.dec1(), e2, leaky, d1);
-    Node<T> cat1 = concat(d1, e1);
-    Node<T> d0(net.dec0().output(cat1.desc));
-    forward(w, "dec0", net.dec0(), cat1, leaky, d0);
-    Node<T> cat0 = concat(d0, e0);
-    Node<T> y(net.last().output(cat0.desc));
-    forward(w, "out", net.last(), cat0, Activation::none(), y);
+
+    // Down; without a head the image is the first skip.
+    std::vector<Node<T>> skip{image};
+    if (net.head > 0) {
+        skip[0] = Node<T>(net.encoder(0).output(xDesc));
+        forward(w, enc(0), net.encoder(0), image, leaky, skip[0]);
+    }
+    for (std::uint32_t l = 1; l <= bottom; ++l) {
+        skip.emplace_back(net.encoder(l).output(skip[l - 1].desc));
+        forward(w, enc(l), net.encoder(l), skip[l - 1], leaky, skip[l]);
+    }
+    // Up; both[l] is [up, skip], of the coarsest level the skip alone.
+    std::vector<Node<T>> both(skip), up(skip);
+    for (std::uint32_t l = bottom; l-- > 0;) {
+        up[l] = Node<T>(net.decoder(l).output(both[l + 1].desc));
+        forward(w, dec(l), net.decoder(l), both[l + 1], leaky, up[l]);
+        both[l] = concat(up[l], skip[l]);
+    }
+    Node<T> y(net.last().output(both[0].desc));
+    forward(w, "out", net.last(), both[0], Activation::none(), y);
     result.output = y.x;
 
     result.loss = loss<T>(LossKind::MeanSquare, y.x, target, {}, 1, y.dX);
-    backward(w, "out", net.last(), cat0, Activation::none(), y);
-    concatBackward(cat0, d0, e0);
-    backward(w, "dec0", net.dec0(), cat1, leaky, d0);
-    concatBackward(cat1, d1, e1);
-    backward(w, "dec1", net.dec1(), e2, leaky, d1);
-    backward(w, "enc2", net.enc2(), e1, leaky, e2);
-    backward(w, "enc1", net.enc1(), e0, leaky, e1);
-    backward(w, "enc0", net.enc0(), image, leaky, e0);
+    backward(w, "out", net.last(), both[0], Activation::none(), y);
+    for (std::uint32_t l = 0; l < bottom; ++l) {
+        concatBackward(both[l], up[l], skip[l]);
+        backward(w, dec(l), net.decoder(l), both[l + 1], leaky, up[l]);
+    }
+    skip[bottom].dX = both[bottom].dX;
+    for (std::uint32_t l = bottom; l > 0; --l)
+        backward(w, enc(l), net.encoder(l), skip[l - 1], leaky, skip[l]);
+    if (net.head > 0)
+        backward(w, enc(0), net.encoder(0), image, leaky, skip[0]);
     return result;
 }
 

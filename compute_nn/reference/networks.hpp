@@ -19,7 +19,7 @@ template <class T> struct NetworkResult
     std::vector<T> gradient; // [parameters], of the loss
 };
 
-// x [N,24,H,W], target [N,3,H,W]; mean squared error. Gradients are set, not accumulated.
+// x [N,in,H,W], target [N,out,H,W]; mean squared error. Gradients are set, not accumulated.
 template <class T>
 NetworkResult<T> unet(const UNetDesc& net, std::span<const T> parameters, const TensorDesc& xDesc,
                       std::span<const T> x, std::span<const T> target);

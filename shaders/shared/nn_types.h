@@ -99,6 +99,18 @@ struct ElementPush
     float slope;
 };
 
+// A kernel of 3x3 taps for each pixel of four planes.
+STRANDLIGHT_CONST(uint) kFilterTaps = 9u;
+STRANDLIGHT_CONST(uint) kFilterChannels = 4u;
+
+struct KernelFilterPush
+{
+    TensorView logits;
+    TensorView image;
+    TensorView dY; // backward
+    TensorView result;
+};
+
 struct LossPush
 {
     uint count;

@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "compute_nn/activation.hpp"
+#include "compute_nn/kernel_filter.hpp"
 #include "compute_nn/loss.hpp"
 #include "compute_nn/reference/activation.hpp"
+#include "compute_nn/reference/kernel_filter.hpp"
 #include "compute_nn/reference/loss.hpp"
 #include "compute_nn/reference/sg_mixture.hpp"
 #include "compute_nn/sg_mixture.hpp"
@@ -150,6 +152,52 @@ void addMixture(std::vector<OpCase>& cases, const SgMixtureDesc& desc)
          }});
 }
 
+void addKernelFilter(std::vector<OpCase>& cases, const TensorDesc& image, float spread)
+{
+    TensorDesc taps = image;
+    taps.c = gpu::kFilterTaps;
+    // Logits lie between other channels, as they do in a network's output.
+    const TensorDesc wide{taps.n, taps.c + 3, taps.h, taps.w};
+    const auto logits = [=] {
+        const std::vector<float> all = randomValues<float>(wide.elements(), 60, -spread, spread);
+        std::vector<double> part;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (i / wide.pixels() % wide.c >= 3)
+                part.push_back(all[i]);
+        return part;
+    };
+    cases.push_back(
+        {"kernel_filter " + shapeText(image),
+         [=](Context& context) {
+             RenderGraph graph(context);
+             const TensorId out =
+                 uploadTensor(graph, "network output", wide,
+                              randomValues<float>(wide.elements(), 60, -spread, spread));
+             const TensorId kernel = channelRange(out, 3, taps.c);
+             const TensorId x =
+                 uploadTensor(graph, "image", image, randomValues<float>(image.elements(), 61));
+             const TensorId dY =
+                 uploadTensor(graph, "dY", image, randomValues<float>(image.elements(), 62));
+             const TensorId y =
+                 kernelFilterForward(graph, "f", kernel, x, createTensor(graph, "y", image));
+             const TensorId dLogits = kernelFilterBackward(graph, "b", kernel, x, dY,
+                                                           createTensor(graph, "dLogits", taps));
+             graph.output(y.buffer);
+             graph.output(dLogits.buffer);
+             graph.execute();
+             return std::vector<Output>{{"y", graph.read<float>(y.buffer)},
+                                        {"dLogits", graph.read<float>(dLogits.buffer)}};
+         },
+         [=] {
+             const std::vector<double> x = randomValues<double>(image.elements(), 61);
+             std::vector<double> y(image.elements()), dLogits(taps.elements());
+             reference::kernelFilter<double>(image, logits(), x, y);
+             reference::kernelFilterBackward<double>(
+                 image, logits(), x, randomValues<double>(image.elements(), 62), dLogits);
+             return std::vector<ExpectedOutput>{{"y", y}, {"dLogits", dLogits}};
+         }});
+}
+
 } // namespace
 
 void addOtherCases(std::vector<OpCase>& cases)
@@ -171,6 +219,9 @@ void addOtherCases(std::vector<OpCase>& cases)
     addMixture(cases, {.images = 2, .lobes = 3, .directions = 33, .sharedDirections = false});
     // As many directions as one invocation may loop over.
     addMixture(cases, {.images = 1, .lobes = 2, .directions = 32768});
+    addKernelFilter(cases, {1, 4, 1, 1}, 3.0f); // one tap alone is inside
+    addKernelFilter(cases, {2, 4, 13, 7}, 3.0f);
+    addKernelFilter(cases, {1, 4, 9, 33}, 100.0f); // exponentials that would overflow
 }
 
 } // namespace strandlight::test

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compute_nn/activation.hpp"
 #include "compute_nn/encoder.hpp"
 #include "compute_nn/reference/adam.hpp"
 #include "compute_nn/reference/networks.hpp"
@@ -87,30 +88,55 @@ TEST_CASE("encoder: twenty training steps follow the twin, and two runs have the
     }
 }
 
-TEST_CASE("U-Net: twenty training steps follow the twin")
+TEST_CASE("U-Net: twenty training steps follow the twin, whatever the levels")
 {
-    const UNetDesc net;
-    const TensorDesc xDesc{2, 24, 8, 12}, yDesc{2, 3, 8, 12};
-    const std::vector<float> x = randomValues<float>(xDesc.elements(), 80, 0.0f, 1.0f);
-    const std::vector<float> target = randomValues<float>(yDesc.elements(), 81, 0.0f, 1.0f);
-    Parameters parameters(context(), net.parameters(), 9);
-    std::vector<double> values = convert<double>(net.parameters().initialValues(9));
-    std::vector<double> m(values.size(), 0.0), v(values.size(), 0.0);
-    for (std::uint32_t step = 1; step <= kSteps; ++step) {
-        RenderGraph graph(context());
-        ParameterIds ids(graph, parameters);
-        const UNetStep result =
-            addUNetTrainingStep(graph, net, ids, uploadTensor(graph, "x", xDesc, x),
-                                uploadTensor(graph, "target", yDesc, target), {}, step);
-        graph.output(result.loss);
-        graph.execute();
-        const auto expected = reference::unet<double>(net, values, xDesc, convert<double>(x),
-                                                      convert<double>(target));
-        CHECK_EQ(graph.read<float>(result.loss)[0],
-                 doctest::Approx(expected.loss).epsilon(kTraceTolerance));
-        REQUIRE(reference::adamStep<double>({}, step, expected.gradient, values, m, v));
+    for (const UNetDesc& net : {UNetDesc{}, hairUNet(HairUNetSize::Small), benchmarkUNet()}) {
+        const std::uint32_t side = 1u << net.levels();
+        const TensorDesc xDesc{2, net.in, side, 2 * side}, yDesc{2, net.out, side, 2 * side};
+        CAPTURE(shapeText(xDesc));
+        const std::vector<float> x = randomValues<float>(xDesc.elements(), 80, 0.0f, 1.0f);
+        const std::vector<float> target = randomValues<float>(yDesc.elements(), 81, 0.0f, 1.0f);
+        Parameters parameters(context(), net.parameters(), 9);
+        std::vector<double> values = convert<double>(net.parameters().initialValues(9));
+        std::vector<double> m(values.size(), 0.0), v(values.size(), 0.0);
+        for (std::uint32_t step = 1; step <= kSteps; ++step) {
+            RenderGraph graph(context());
+            ParameterIds ids(graph, parameters);
+            const UNetStep result =
+                addUNetTrainingStep(graph, net, ids, uploadTensor(graph, "x", xDesc, x),
+                                    uploadTensor(graph, "target", yDesc, target), {}, step);
+            graph.output(result.loss);
+            graph.execute();
+            const auto expected = reference::unet<double>(net, values, xDesc, convert<double>(x),
+                                                          convert<double>(target));
+            CHECK_EQ(graph.read<float>(result.loss)[0],
+                     doctest::Approx(expected.loss).epsilon(kTraceTolerance));
+            REQUIRE(reference::adamStep<double>({}, step, expected.gradient, values, m, v));
+        }
+        CHECK_LE(relativeError(parameters.download(), values), 1e-4);
     }
-    CHECK_LE(relativeError(parameters.download(), values), 1e-4);
+}
+
+TEST_CASE("U-Net: without a head, an input written in place gives the bits of a copied one")
+{
+    const UNetDesc net = hairUNet(HairUNetSize::Small);
+    const TensorDesc xDesc{2, net.in, 8, 16};
+    Parameters parameters(context(), net.parameters(), 9);
+    const std::vector<float> x = randomValues<float>(xDesc.elements(), 83, 0.0f, 1.0f);
+    const auto run = [&](bool inPlace) {
+        RenderGraph graph(context());
+        const ParameterIds ids(graph, parameters);
+        TensorId input = uploadTensor(graph, "x", xDesc, x);
+        if (inPlace)
+            input = activationForward(graph, "fill", Activation::none(), input,
+                                      createUNetInput(graph, net, xDesc));
+        const UNetValues values = unetForward(graph, net, ids, input);
+        CHECK_EQ(values.levels[0].buffer.index == input.buffer.index, inPlace);
+        graph.output(values.y.buffer);
+        graph.execute();
+        return graph.read<float>(values.y.buffer);
+    };
+    CHECK_EQ(run(true), run(false));
 }
 
 TEST_CASE("U-Net: one bright pixel changes nothing outside its receptive field")

@@ -6,6 +6,7 @@
 
 #include "compute_nn/reference/adam.hpp"
 #include "compute_nn/reference/conv2d.hpp"
+#include "compute_nn/reference/kernel_filter.hpp"
 #include "compute_nn/reference/loss.hpp"
 #include "compute_nn/reference/networks.hpp"
 #include "compute_nn/reference/sg_mixture.hpp"
@@ -28,11 +29,11 @@ double dot(const Values& a, const Values& b)
 // A step of 1e-3 leaves a truncation error of about h^4 = 1e-12 and a rounding error of about 1e-13
 // |f|, so the tolerances can be far below PyTorch's gradcheck (1e-5 absolute, 1e-3 relative).
 void checkGradient(const std::string& what, Values x, const Values& gradient,
-                   const std::function<double(const Values&)>& f, std::size_t checks = 4)
+                   const std::function<double(const Values&)>& f, std::size_t checks = 4,
+                   double h = 1e-3)
 {
     CAPTURE(what);
     REQUIRE_EQ(x.size(), gradient.size());
-    const double h = 1e-3;
     const std::size_t stride = std::max<std::size_t>(1, x.size() / checks);
     for (std::size_t i = 0; i < x.size(); i += stride) {
         const double at = x[i];
@@ -148,6 +149,29 @@ TEST_CASE("SG mixture: gradients equal finite differences through the decoder")
     CHECK_EQ(dRaw[3], 0.0);
 }
 
+TEST_CASE("predicted kernel: gradient equals finite differences; a constant image stays constant")
+{
+    const TensorDesc image{2, 4, 5, 3};
+    const std::size_t taps = std::size_t(image.n) * gpu::kFilterTaps * image.pixels();
+    const Values logits = randomValues<double>(taps, 15, -2.0f, 2.0f);
+    const Values x = randomValues<double>(image.elements(), 16);
+    const Values dY = randomValues<double>(image.elements(), 17);
+    Values dLogits(taps);
+    reference::kernelFilterBackward<double>(image, logits, x, dY, dLogits);
+    checkGradient(
+        "logits", logits, dLogits,
+        [&](const Values& v) {
+            Values y(x.size());
+            reference::kernelFilter<double>(image, v, x, y);
+            return dot(y, dY);
+        },
+        90);
+    Values y(x.size());
+    reference::kernelFilter<double>(image, logits, Values(x.size(), 0.7), y);
+    for (double v : y)
+        CHECK_EQ(v, doctest::Approx(0.7).epsilon(1e-14));
+}
+
 TEST_CASE("SG decoder: axes that cannot be normalised naively")
 {
     for (float scale : {0.0f, 1e-38f, 1e-20f, 1.0f, 1e20f, 3e38f}) {
@@ -236,4 +260,30 @@ TEST_CASE("encoder: gradients of the whole network equal finite differences")
     checkGradient(
         "parameters", parameters, result.gradient, [&](const Values& v) { return run(v).loss; },
         60);
+}
+
+TEST_CASE("U-Net: gradients of every form of it equal finite differences")
+{
+    // The filters' forms with few channels: two levels and a head, three without one, four with
+    // 4x4 kernels. Tiny pictures, so that every tap meets a border.
+    UNetDesc headless{.in = 3, .out = 2, .head = 0, .down = {2, 3, 2}, .up = {3, 2, 2}};
+    UNetDesc deep{.in = 2, .out = 1, .head = 2, .down = {2, 3, 2, 2}, .up = {2, 3, 2, 2}};
+    deep.upKernel = 4;
+    for (const UNetDesc& net :
+         {UNetDesc{.in = 2, .out = 3, .head = 3, .down = {2, 4}, .up = {3, 2}}, headless, deep}) {
+        const std::uint32_t side = 1u << net.levels();
+        const TensorDesc x{2, net.in, side, 2 * side};
+        CAPTURE(shapeText(x));
+        const Values parameters = convert<double>(net.parameters().initialValues(4));
+        const Values image = randomValues<double>(x.elements(), 13, 0.0f, 1.0f);
+        const Values target = randomValues<double>(2 * std::size_t(net.out) * x.pixels(), 14);
+        const auto run = [&](const Values& p) {
+            return reference::unet<double>(net, p, x, image, target);
+        };
+        // Leaky relus have kinks; a step of 1e-6 rarely crosses one (and with these seeds does
+        // not), and still leaves a rounding error of only 1e-10.
+        checkGradient(
+            "parameters", parameters, run(parameters).gradient,
+            [&](const Values& v) { return run(v).loss; }, 60, 1e-6);
+    }
 }

@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "compute_nn/network_shapes.hpp"
 #include "engine/base/error.hpp"
@@ -10,20 +12,50 @@ using namespace strandlight;
 
 TEST_CASE("U-Net: every level has the size that its skip needs")
 {
-    const UNetDesc net;
-    for (TensorDesc x :
-         {TensorDesc{1, 24, 4, 4}, TensorDesc{2, 24, 24, 40}, TensorDesc{1, 24, 384, 640}}) {
-        net.check(x);
-        const TensorDesc e0 = net.enc0().output(x), e1 = net.enc1().output(e0),
-                         e2 = net.enc2().output(e1), d1 = net.dec1().output(e2);
-        CHECK_EQ(d1, e1);
-        const TensorDesc d0 = net.dec0().output({e1.n, 2 * e1.c, e1.h, e1.w});
-        CHECK_EQ(d0, e0);
-        CHECK_EQ(net.last().output({e0.n, 2 * e0.c, e0.h, e0.w}), TensorDesc{x.n, 3, x.h, x.w});
+    for (const UNetDesc& net : {UNetDesc{}, hairUNet(HairUNetSize::Small), hairUNet(),
+                                hairUNet(HairUNetSize::Large), benchmarkUNet()}) {
+        const std::uint32_t side = 1u << net.levels();
+        for (TensorDesc x : {TensorDesc{1, net.in, side, side}, TensorDesc{2, net.in, 48, 80},
+                             TensorDesc{1, net.in, 384, 640}}) {
+            net.check(x);
+            TensorDesc skip = x;
+            for (std::uint32_t l = net.head > 0 ? 0 : 1; l <= net.levels(); ++l) {
+                skip = net.encoder(l).output(skip);
+                CHECK_EQ(skip.c, net.skipChannels(l));
+                CHECK_EQ(skip.h, net.level(l, x).h);
+                CHECK_EQ(skip.w, net.level(l, x).w);
+            }
+            for (std::uint32_t l = net.levels(); l-- > 0;) {
+                TensorDesc up = net.decoder(l).output(net.level(l + 1, x));
+                up.c += net.skipChannels(l);
+                CHECK_EQ(up, net.level(l, x));
+            }
+            CHECK_EQ(net.last().output(net.level(0, x)), TensorDesc{x.n, net.out, x.h, x.w});
+        }
     }
-    CHECK_THROWS_AS(net.check({1, 24, 6, 8}), Error);
-    CHECK_THROWS_AS(net.check({1, 23, 8, 8}), Error);
-    CHECK_THROWS_AS(net.check({1, 24, 0, 8}), Error);
+    CHECK_THROWS_AS(UNetDesc{}.check({1, 24, 6, 8}), Error);
+    CHECK_THROWS_AS(UNetDesc{}.check({1, 23, 8, 8}), Error);
+    CHECK_THROWS_AS(UNetDesc{}.check({1, 24, 0, 8}), Error);
+    CHECK_THROWS_AS(hairUNet().check({1, 25, 12, 16}), Error);
+    CHECK_THROWS_AS((UNetDesc{.down = {8}, .up = {8, 8}}.check({1, 24, 8, 8})), Error);
+    CHECK_THROWS_AS((UNetDesc{.upKernel = 3}.check({1, 24, 8, 8})), Error);
+}
+
+TEST_CASE("U-Net: layers of the hair network as its files name them")
+{
+    const ParameterLayout layout = hairUNet().parameters();
+    std::vector<std::string> names;
+    for (const ParameterSlice& slice : layout.slices())
+        if (slice.name.ends_with(".weight"))
+            names.push_back(slice.name.substr(0, slice.name.size() - 7));
+    CHECK_EQ(names,
+             std::vector<std::string>{"enc1", "enc2", "enc3", "dec2", "dec1", "dec0", "out"});
+    using Shape = std::vector<std::uint64_t>;
+    CHECK_EQ(layout.slice("enc1.weight").shape, Shape{32, 25, 3, 3});
+    CHECK_EQ(layout.slice("dec2.weight").shape, Shape{64, 48, 2, 2});
+    CHECK_EQ(layout.slice("dec0.weight").shape, Shape{64, 16, 2, 2});
+    CHECK_EQ(layout.slice("out.weight").shape, Shape{12, 41, 3, 3});
+    CHECK_EQ(benchmarkUNet().parameters().slice("dec0.weight").shape, Shape{32, 16, 4, 4});
 }
 
 TEST_CASE("parameters lie next to each other, in order, without overlap")
