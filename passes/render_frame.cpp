@@ -76,7 +76,8 @@ ImageId addLight(RenderGraph& graph, const FramePlan& plan, const Scene& scene, 
         return addSgViewPass(graph, gbuffer, radiance, camera.eye, std::uint32_t(settings.view),
                              lit);
     if (plan.diffuse)
-        lit = addSgDiffusePass(graph, "sg diffuse", gbuffer, radiance, camera.eye, lit);
+        lit = addSgDiffusePass(graph, "sg diffuse", gbuffer, radiance, camera.eye, settings.diffuse,
+                               lit);
     const bool needsTable = plan.specular;
     const ImageId tableId = needsTable ? graph.importImage(table) : ImageId{};
     if (plan.specular)
@@ -89,7 +90,8 @@ ImageId addLight(RenderGraph& graph, const FramePlan& plan, const Scene& scene, 
     const SgLobeIds sky = importEnvironmentLobes(graph, textures);
     EnvironmentIds environment = addEnvironment(graph, *scene.environment);
     if (plan.diffuse)
-        lit = addSgDiffusePass(graph, "sg diffuse environment", gbuffer, sky, camera.eye, lit);
+        lit = addSgDiffusePass(graph, "sg diffuse environment", gbuffer, sky, camera.eye,
+                               settings.diffuse, lit);
     if (plan.specular) {
         environment = addEnvironmentPrefilterPass(graph, environment);
         lit = addSgEnvironmentPass(graph, gbuffer, sky, tableId, environment, camera.eye,

@@ -29,6 +29,7 @@ struct RenderSettings
     std::uint32_t height = 480;
     std::uint32_t supersample = 2; // per axis, 1 .. 8; averaged in linear radiance
     SpecularModel specular = SpecularModel::Mixture;
+    DiffuseModel diffuse = DiffuseModel::Tokuyoshi;
     RenderView view = RenderView::Final;
 };
 

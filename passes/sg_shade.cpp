@@ -30,7 +30,7 @@ void readLobes(PassBuilder& pass, const SgLobeIds& lobes)
 } // namespace
 
 ImageId addSgDiffusePass(RenderGraph& graph, std::string_view name, const GBufferIds& gbuffer,
-                         const SgLobeIds& lobes, glm::vec3 eye, ImageId lit)
+                         const SgLobeIds& lobes, glm::vec3 eye, DiffuseModel model, ImageId lit)
 {
     PassBuilder pass = graph.addComputePass(name);
     readGBuffer(pass, gbuffer);
@@ -39,7 +39,8 @@ ImageId addSgDiffusePass(RenderGraph& graph, std::string_view name, const GBuffe
     const ImageId out = pass.write(lit);
     pass.dispatch(kernels::sg_diffuse, graph.extent(out), shadePush(graph, gbuffer, lobes, eye),
                   {gbuffer.position, gbuffer.frame, gbuffer.tangent, gbuffer.normal,
-                   gbuffer.diffuse, gbuffer.specular, lobes.texelIndex, lobes.lobes, out});
+                   gbuffer.diffuse, gbuffer.specular, lobes.texelIndex, lobes.lobes, out},
+                  {std::uint32_t(model)});
     return out;
 }
 

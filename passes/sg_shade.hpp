@@ -21,9 +21,17 @@ enum class SpecularModel : std::uint32_t
     NdfFilter = gpu::kSpecularNdfFilter // Tokuyoshi 2024
 };
 
+// The clamped-cosine integral of a lobe; shaders/shared/sg_diffuse.h has the measured errors.
+enum class DiffuseModel : std::uint32_t
+{
+    Tokuyoshi = gpu::kDiffuseTokuyoshi, // 2024: the default
+    Hill = gpu::kDiffuseHill,           // wrong for lobes of sharpness below 1
+    Wang = gpu::kDiffuseWang            // the cosine as a lobe
+};
+
 // Irradiance of the lobes on the Lambert part.
 ImageId addSgDiffusePass(RenderGraph& graph, std::string_view name, const GBufferIds& gbuffer,
-                         const SgLobeIds& lobes, glm::vec3 eye, ImageId lit);
+                         const SgLobeIds& lobes, glm::vec3 eye, DiffuseModel model, ImageId lit);
 
 // Their glossy reflection. `table`: uploadSpecularTable().
 ImageId addSgSpecularPass(RenderGraph& graph, const GBufferIds& gbuffer, const SgLobeIds& lobes,

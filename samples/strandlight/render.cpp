@@ -25,6 +25,9 @@ const std::map<std::string, RenderView> kViews{{"final", RenderView::Final},
 const std::map<std::string, SpecularModel> kSpecularModels{{"mixture", SpecularModel::Mixture},
                                                            {"asg", SpecularModel::Asg},
                                                            {"ndf", SpecularModel::NdfFilter}};
+const std::map<std::string, DiffuseModel> kDiffuseModels{{"tokuyoshi", DiffuseModel::Tokuyoshi},
+                                                         {"hill", DiffuseModel::Hill},
+                                                         {"wang", DiffuseModel::Wang}};
 
 struct Options
 {
@@ -35,6 +38,7 @@ struct Options
     std::string bake;
     std::string viewName = "final";
     std::string specularName = "mixture";
+    std::string diffuseName = "tokuyoshi";
     bool stats = false;
     std::string json;
 };
@@ -60,6 +64,7 @@ Json describe(const Options& o, const Context& context, const Camera& camera,
                         {"camera", describeCamera(camera)},
                         {"view", o.viewName},
                         {"specular", o.specularName},
+                        {"diffuse", o.diffuseName},
                         {"exposure", o.view.exposure}};
     Json passes = Json::array();
     for (const PassTiming& timing : frame.timings)
@@ -109,6 +114,7 @@ int run(Options& o)
     o.settings.height = size.height;
     o.settings.view = kViews.at(o.viewName);
     o.settings.specular = kSpecularModels.at(o.specularName);
+    o.settings.diffuse = kDiffuseModels.at(o.diffuseName);
     const SgBake bake = loadSgl(o.bake);
     const Scene scene = openScene(o.scene);
     checkBakeOfScene(o, bake, scene);
@@ -153,6 +159,11 @@ Command addRender(CLI::App& parent)
         ->type_name("MODEL")
         ->capture_default_str()
         ->check(CLI::IsMember(kSpecularModels));
+    app->add_option("--diffuse", o->diffuseName,
+                    "tokuyoshi: 2024, exact to 1e-3; hill, wang: cheaper")
+        ->type_name("MODEL")
+        ->capture_default_str()
+        ->check(CLI::IsMember(kDiffuseModels));
     app->add_option("--supersample", o->settings.supersample, "Per axis")
         ->type_name("N")
         ->capture_default_str()

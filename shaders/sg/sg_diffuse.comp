@@ -1,5 +1,6 @@
 // Diffuse light from baked lobes: sum of amplitude times the clamped-cosine integral (shared/sg_diffuse.h), less what
-// Fresnel keeps from the base layer, as the path tracer's BRDF has it (shared/brdf.h).
+// Fresnel keeps from the base layer, as the path tracer's BRDF has it (shared/brdf.h). Specialisation constant 0 chooses
+// the integral (kDiffuse... in shared/shade_types.h).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,6 +8,7 @@
 #include "shared/shade_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint kModel = kDiffuseTokuyoshi;
 layout(binding = 0, rgba32f) uniform readonly image2D positionImage;
 layout(binding = 1, rgba32f) uniform readonly image2D frameImage;
 layout(binding = 2, rgba32f) uniform readonly image2D tangentImage;
@@ -21,6 +23,17 @@ layout(push_constant, scalar) uniform Push { SgShadePush push; };
 #define SG_LOBES lobes
 #include "sg/frame.glsl"
 #include "sg/lobe_fetch.glsl"
+
+float irradianceOf(float lambda, float cosine)
+{
+    if (kModel == kDiffuseHill) {
+        return sgIrradianceHill(lambda, cosine);
+    }
+    if (kModel == kDiffuseWang) {
+        return sgIrradianceWang(lambda, cosine);
+    }
+    return sgIrradiance(lambda, cosine);
+}
 
 void main()
 {
@@ -46,7 +59,7 @@ void main()
     vec3 irradiance = vec3(0.0);
     for (uint i = 0u; i < push.lobeCount; ++i) {
         SgSample lobe = sgFetch(footprint, i);
-        float response = sgIrradiance(lobe.lambda, clamp(dot(lobe.axis, normal), -1.0, 1.0));
+        float response = irradianceOf(lobe.lambda, clamp(dot(lobe.axis, normal), -1.0, 1.0));
         float schlick = lobeSchlickWeight(wideMean, view, normal, lobe.axis, lobe.lambda);
         float kept = 1.0 - mix(largestF0, diffuse.w, schlick);
         irradiance += lobe.amplitude * (response * kept);

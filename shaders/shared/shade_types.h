@@ -27,6 +27,10 @@ STRANDLIGHT_CONST(uint) kSpecularMixture = 1u;
 STRANDLIGHT_CONST(uint) kSpecularAsg = 2u;
 STRANDLIGHT_CONST(uint) kSpecularNdfFilter = 3u;
 
+STRANDLIGHT_CONST(uint) kDiffuseTokuyoshi = 0u;
+STRANDLIGHT_CONST(uint) kDiffuseHill = 1u;
+STRANDLIGHT_CONST(uint) kDiffuseWang = 2u;
+
 STRANDLIGHT_CONST(uint) kViewFinal = 0u;
 STRANDLIGHT_CONST(uint) kViewDiffuse = 1u;
 STRANDLIGHT_CONST(uint) kViewSpecular = 2u;
