@@ -28,8 +28,8 @@ constexpr double kSliceSeconds = 0.15;
 constexpr std::uint32_t kMostStepsPerSlice = 64;
 
 // Runs the fit to its last step, saving and listening on the way. Returns the first step's loss.
-double runToEnd(DirectFit& fit, const FitSettings& settings, double firstLoss,
-                const FitCheckpoint* checkpoint)
+double runToEnd(DirectFit& fit, const FitProblem& problem, const FitSettings& settings,
+                double firstLoss, const FitCheckpoint* checkpoint, FitWatch* watch)
 {
     Progress progress("fit", settings.steps);
     const auto save = [&] {
@@ -52,6 +52,8 @@ double runToEnd(DirectFit& fit, const FitSettings& settings, double firstLoss,
         if (before == 0)
             firstLoss = fit.loss();
         progress.update(fit.step());
+        if (watch)
+            watch->update(problem, [&] { return fieldFromState(problem, fit.state()); });
         // How steps are cut into submits does not change the result.
         const double perStep = secondsSince(start) / double(fit.step() - before);
         slice = std::uint32_t(std::clamp(kSliceSeconds / perStep, 1.0, double(kMostStepsPerSlice)));
@@ -78,7 +80,8 @@ void countClamps(const FitProblem& problem, const SgField& field, FitStatistics&
 }
 
 SgField runDirect(Context& context, const FitProblem& problem, const FitSettings& settings,
-                  const FitState& start, const FitCheckpoint* checkpoint, FitStatistics& statistics)
+                  const FitState& start, const FitCheckpoint* checkpoint, FitWatch* watch,
+                  FitStatistics& statistics)
 {
     if (start.parameters.size() !=
         std::size_t(problem.lobes) * problem.texelCount() * gpu::kSgFitLobeFloats)
@@ -86,7 +89,7 @@ SgField runDirect(Context& context, const FitProblem& problem, const FitSettings
                     " parameters does not belong to " + std::to_string(problem.texelCount()) +
                     " texels of " + std::to_string(problem.lobes) + " lobes");
     DirectFit fit(context, problem, settings, start);
-    statistics.firstLoss = runToEnd(fit, settings, start.firstLoss, checkpoint);
+    statistics.firstLoss = runToEnd(fit, problem, settings, start.firstLoss, checkpoint, watch);
     const FitState state = fit.state();
     statistics.lastLoss = fit.loss();
     statistics.skippedSteps = state.skippedSteps;
@@ -118,9 +121,11 @@ SgField fitLobes(Context& context, const Atlas& atlas, const Lightfield& lightfi
 }
 
 SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings& settings,
-                 FitStatistics* statistics, const FitCheckpoint* checkpoint)
+                 FitStatistics* statistics, const FitCheckpoint* checkpoint, FitWatch* watch)
 {
     const Clock::time_point begin = Clock::now();
+    if (watch)
+        watch->start();
     FitStatistics numbers;
     SgField field;
     field.lobeCount = problem.lobes;
@@ -129,21 +134,22 @@ SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings&
         if (settings.mode == FitMode::Direct) {
             field = runDirect(context, problem, settings,
                               resume ? *resume : startFit(problem, settings.start), checkpoint,
-                              numbers);
+                              watch, numbers);
         } else {
             // The encoder is trained again when a bake is resumed: it is the same to the last bit.
             if (settings.mode == FitMode::Cnn || !resume)
-                field = fitLobesByCnn(context, problem, settings, numbers);
+                field = fitLobesByCnn(context, problem, settings, numbers, watch);
             FitSettings refine = settings;
             refine.coarseSmoothness = refine.smoothness; // the encoder has found the places
             if (settings.mode == FitMode::CnnRefine)
-                field = runDirect(context, problem, refine,
-                                  resume ? *resume : startFit(problem, field), checkpoint, numbers);
+                field =
+                    runDirect(context, problem, refine, resume ? *resume : startFit(problem, field),
+                              checkpoint, watch, numbers);
         }
         numbers.heldIrradiance = matchIrradiance(problem, field);
         countClamps(problem, field, numbers);
     }
-    numbers.seconds = secondsSince(begin);
+    numbers.seconds = secondsSince(begin) - (watch ? watch->secondsLooking() : 0.0);
     if (statistics)
         *statistics = numbers;
     return field;

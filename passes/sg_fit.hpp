@@ -11,6 +11,7 @@
 #include "passes/sg_field.hpp"
 #include "passes/sg_fit_cells.hpp"
 #include "passes/sg_fit_settings.hpp"
+#include "passes/sg_fit_watch.hpp"
 
 namespace strandlight {
 
@@ -24,6 +25,7 @@ SgField fitLobes(Context& context, const Atlas& atlas, const Lightfield& lightfi
 
 // The same from a problem on the CPU, when it is needed for a report as well.
 SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings& settings,
-                 FitStatistics* statistics = nullptr, const FitCheckpoint* checkpoint = nullptr);
+                 FitStatistics* statistics = nullptr, const FitCheckpoint* checkpoint = nullptr,
+                 FitWatch* watch = nullptr);
 
 } // namespace strandlight

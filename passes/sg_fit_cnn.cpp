@@ -149,29 +149,6 @@ double trainStep(Context& context, Encoder& encoder, const FitProblem& problem,
     return double(graph.read<float>(result.loss).front());
 }
 
-void train(Context& context, Encoder& encoder, const FitProblem& problem,
-           const FitSettings& settings, FitStatistics& statistics)
-{
-    std::vector<std::uint32_t> order = shuffledTexels(problem, 0, settings.seed);
-    const auto batches = std::uint32_t((order.size() + kTexelsPerStep - 1) / kTexelsPerStep);
-    const std::uint32_t steps = settings.cnnSteps;
-    Progress progress("train", steps);
-    for (std::uint32_t step = 0; step < steps; ++step) {
-        throwIfInterrupted();
-        if (step > 0 && step % batches == 0)
-            order = shuffledTexels(problem, step / batches, settings.seed);
-        const std::size_t first = std::size_t(step % batches) * kTexelsPerStep;
-        const auto texels = std::span(order).subspan(
-            first, std::min<std::size_t>(kTexelsPerStep, order.size() - first));
-        const double rate = kLearningRate * std::exp2(-double(3 * step / steps));
-        statistics.lastLoss = trainStep(context, encoder, problem, texels, step + 1, rate);
-        if (step == 0)
-            statistics.firstLoss = statistics.lastLoss;
-        progress.update(step + 1);
-    }
-    statistics.skippedSteps = encoder.parameters.report().stepsSkipped;
-}
-
 // Decoded lobes [N, L, 7] of some texels: axis, sharpness, amplitude over the mean.
 std::vector<float> encode(Context& context, Encoder& encoder, const FitProblem& problem,
                           std::span<const std::uint32_t> texels)
@@ -229,14 +206,8 @@ void fillTexelsWithoutImage(const FitProblem& problem, SgField& field)
     }
 }
 
-} // namespace
-
-SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSettings& settings,
-                      FitStatistics& statistics)
+SgField encodeAll(Context& context, Encoder& encoder, const FitProblem& problem)
 {
-    Encoder encoder = makeEncoder(context, problem, settings);
-    train(context, encoder, problem, settings, statistics);
-
     SgField field;
     field.lobeCount = problem.lobes;
     field.lobes.resize(std::size_t(problem.texelCount()) * problem.lobes);
@@ -257,6 +228,41 @@ SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSett
     }
     fillTexelsWithoutImage(problem, field);
     return field;
+}
+
+void train(Context& context, Encoder& encoder, const FitProblem& problem,
+           const FitSettings& settings, FitStatistics& statistics, FitWatch* watch)
+{
+    std::vector<std::uint32_t> order = shuffledTexels(problem, 0, settings.seed);
+    const auto batches = std::uint32_t((order.size() + kTexelsPerStep - 1) / kTexelsPerStep);
+    const std::uint32_t steps = settings.cnnSteps;
+    Progress progress("train", steps);
+    for (std::uint32_t step = 0; step < steps; ++step) {
+        throwIfInterrupted();
+        if (step > 0 && step % batches == 0)
+            order = shuffledTexels(problem, step / batches, settings.seed);
+        const std::size_t first = std::size_t(step % batches) * kTexelsPerStep;
+        const auto texels = std::span(order).subspan(
+            first, std::min<std::size_t>(kTexelsPerStep, order.size() - first));
+        const double rate = kLearningRate * std::exp2(-double(3 * step / steps));
+        statistics.lastLoss = trainStep(context, encoder, problem, texels, step + 1, rate);
+        if (step == 0)
+            statistics.firstLoss = statistics.lastLoss;
+        progress.update(step + 1);
+        if (watch)
+            watch->update(problem, [&] { return encodeAll(context, encoder, problem); });
+    }
+    statistics.skippedSteps = encoder.parameters.report().stepsSkipped;
+}
+
+} // namespace
+
+SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSettings& settings,
+                      FitStatistics& statistics, FitWatch* watch)
+{
+    Encoder encoder = makeEncoder(context, problem, settings);
+    train(context, encoder, problem, settings, statistics, watch);
+    return encodeAll(context, encoder, problem);
 }
 
 } // namespace strandlight

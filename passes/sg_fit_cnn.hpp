@@ -8,6 +8,7 @@
 #include "passes/sg_field.hpp"
 #include "passes/sg_fit_cells.hpp"
 #include "passes/sg_fit_settings.hpp"
+#include "passes/sg_fit_watch.hpp"
 
 namespace strandlight {
 
@@ -15,6 +16,6 @@ namespace strandlight {
 // texel. Texels without image get the mean of their neighbours. Fills firstLoss, lastLoss and
 // skippedSteps of `statistics`. Deterministic. Throws Interrupted when the user stops.
 SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSettings& settings,
-                      FitStatistics& statistics);
+                      FitStatistics& statistics, FitWatch* watch = nullptr);
 
 } // namespace strandlight
