@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/base/error.hpp"
+#include "passes/least_squares.hpp"
 #include "shaders/shared/rgb9e5.h"
 #include "shaders/shared/sg.h"
 
@@ -79,26 +80,6 @@ std::vector<double> projection(const FitProblem& problem, const LinearModel& mod
     return right;
 }
 
-// Gaussian elimination without pivoting: the matrix is symmetric positive definite.
-std::vector<double> solveDefinite(std::vector<double> a, std::vector<double> x)
-{
-    const std::size_t n = x.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t row = i + 1; row < n; ++row) {
-            const double factor = a[row * n + i] / a[i * n + i];
-            for (std::size_t column = i; column < n; ++column)
-                a[row * n + column] -= factor * a[i * n + column];
-            x[row] -= factor * x[i];
-        }
-    }
-    for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t column = i + 1; column < n; ++column)
-            x[i] -= a[i * n + column] * x[column];
-        x[i] /= a[i * n + i];
-    }
-    return x;
-}
-
 // Real spherical harmonics up to band 2, without their constant factors: least squares absorbs
 // them.
 std::vector<double> harmonics(const glm::vec3& d, std::uint32_t bands)
@@ -126,6 +107,71 @@ void solveTexels(const FitProblem& problem, LinearModel& model, const Solve& sol
     }
 }
 
+// Axes on a Fibonacci spiral over the hemisphere, the same sharpness for all; black.
+std::vector<SgLobe> spiralLobes(std::uint32_t count, float sharpness)
+{
+    std::vector<SgLobe> lobes(count);
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const float z = (float(k) + 0.5f) / float(count);
+        const float azimuth = float(k) * 2.39996323f;
+        const float radius = std::sqrt(1.0f - z * z);
+        lobes[k].axis = {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
+        lobes[k].logSharpness = std::log(sharpness);
+    }
+    return lobes;
+}
+
+LinearModel lobeBasis(const FitProblem& problem, const std::vector<SgLobe>& lobes)
+{
+    LinearModel model;
+    model.basisCount = lobes.size();
+    for (const SgLobe& lobe : lobes)
+        for (const glm::vec4& d : problem.directions)
+            model.basis.push_back(
+                double(gpu::sgEvaluate(glm::vec3(d), lobe.axis, std::exp(lobe.logSharpness))));
+    return model;
+}
+
+// The lobes with amplitudes = coefficients [texel, basis] x mixing [basis, lobe].
+std::shared_ptr<const SgField> asLobes(const LinearModel& model, const std::vector<SgLobe>& lobes,
+                                       const std::vector<double>& mixing)
+{
+    SgField field;
+    field.lobeCount = std::uint32_t(lobes.size());
+    const std::size_t texels = model.coefficients.size() / model.basisCount;
+    for (std::size_t t = 0; t < texels; ++t)
+        for (std::size_t k = 0; k < lobes.size(); ++k) {
+            SgLobe lobe = lobes[k];
+            for (std::size_t b = 0; b < model.basisCount; ++b)
+                lobe.amplitude += model.coefficients[t * model.basisCount + b] *
+                                  float(mixing[b * lobes.size() + k]);
+            field.lobes.push_back(lobe);
+        }
+    return std::make_shared<SgField>(std::move(field));
+}
+
+// Spherical harmonics as 32 broad lobes of either sign: within 1 % of every basis function, so that
+// the same shading draws them.
+std::shared_ptr<const SgField> harmonicsAsLobes(const FitProblem& problem,
+                                                const LinearModel& harmonics)
+{
+    // Half the directions at most: normal equations of more lobes than directions have no answer.
+    const std::uint32_t count = std::min(32u, problem.directionCount() / 2);
+    const std::vector<SgLobe> lobes = spiralLobes(count, 2.0f);
+    const LinearModel basis = lobeBasis(problem, lobes);
+    const std::vector<double> gram = gramMatrix(problem, basis);
+    const std::size_t directions = problem.directionCount();
+    std::vector<double> mixing;
+    for (std::size_t b = 0; b < harmonics.basisCount; ++b) {
+        std::vector<glm::vec3> function(directions);
+        for (std::size_t d = 0; d < directions; ++d)
+            function[d].x = float(harmonics.basis[b * directions + d]);
+        const std::vector<double> x = solveDefinite(gram, projection(problem, basis, function, 0));
+        mixing.insert(mixing.end(), x.begin(), x.end());
+    }
+    return asLobes(harmonics, lobes, mixing);
+}
+
 LightFieldModel toModel(LinearModel linear, std::string name, double seconds)
 {
     LightFieldModel out;
@@ -141,31 +187,6 @@ LightFieldModel toModel(LinearModel linear, std::string name, double seconds)
 }
 
 } // namespace
-
-std::vector<double> solveNonNegative(const std::vector<double>& gram,
-                                     const std::vector<double>& right)
-{
-    const std::size_t n = right.size();
-    std::vector<double> x(n, 0.0);
-    for (int sweep = 0; sweep < 1000; ++sweep) {
-        double largestChange = 0.0, largest = 0.0;
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!(gram[i * n + i] > 0.0))
-                continue;
-            double rest = right[i];
-            for (std::size_t j = 0; j < n; ++j)
-                if (j != i)
-                    rest -= gram[i * n + j] * x[j];
-            const double next = std::max(0.0, rest / gram[i * n + i]);
-            largestChange = std::max(largestChange, std::abs(next - x[i]));
-            largest = std::max(largest, next);
-            x[i] = next;
-        }
-        if (largestChange <= 1.0e-7 * largest)
-            break;
-    }
-    return x;
-}
 
 LightFieldModel rawImageModel(const FitProblem& problem)
 {
@@ -200,32 +221,31 @@ LightFieldModel sphericalHarmonicModel(const FitProblem& problem, std::uint32_t 
     const std::vector<double> gram = gramMatrix(problem, model);
     solveTexels(problem, model,
                 [&](std::vector<double> right) { return solveDefinite(gram, std::move(right)); });
-    return toModel(std::move(model), "SH L" + std::to_string(bands - 1), watch.seconds());
+    const double seconds = watch.seconds();
+    const auto lobes = harmonicsAsLobes(problem, model);
+    LightFieldModel out = toModel(std::move(model), "SH L" + std::to_string(bands - 1), seconds);
+    out.lobes = lobes;
+    return out;
 }
 
 LightFieldModel fixedSgModel(const FitProblem& problem, std::uint32_t lobes)
 {
     const Stopwatch watch;
-    const std::size_t directions = problem.directionCount();
-    LinearModel model;
-    model.basisCount = lobes;
-    model.basis.resize(lobes * directions);
-    for (std::uint32_t k = 0; k < lobes; ++k) {
-        const float z = (float(k) + 0.5f) / float(lobes);
-        const float azimuth = float(k) * 2.39996323f;
-        const float radius = std::sqrt(1.0f - z * z);
-        const glm::vec3 axis(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
-        // Solid angle of a lobe, about 2 pi / sharpness, is its share of the hemisphere. Measured
-        // best of 4, 6, 8 and 10 for eight lobes within 1 %.
-        const float sharpness = 0.75f * float(lobes);
-        for (std::size_t d = 0; d < directions; ++d)
-            model.basis[k * directions + d] =
-                double(gpu::sgEvaluate(glm::vec3(problem.directions[d]), axis, sharpness));
-    }
+    // Solid angle of a lobe, about 2 pi / sharpness, is its share of the hemisphere. Measured best
+    // of 4, 6, 8 and 10 for eight lobes within 1 %.
+    const std::vector<SgLobe> axes = spiralLobes(lobes, 0.75f * float(lobes));
+    LinearModel model = lobeBasis(problem, axes);
     const std::vector<double> gram = gramMatrix(problem, model);
     solveTexels(problem, model,
                 [&](const std::vector<double>& right) { return solveNonNegative(gram, right); });
-    return toModel(std::move(model), std::to_string(lobes) + " fixed SGs", watch.seconds());
+    const double seconds = watch.seconds();
+    std::vector<double> identity(std::size_t(lobes) * lobes, 0.0);
+    for (std::size_t k = 0; k < lobes; ++k)
+        identity[k * lobes + k] = 1.0;
+    const auto field = asLobes(model, axes, identity);
+    LightFieldModel out = toModel(std::move(model), std::to_string(lobes) + " fixed SGs", seconds);
+    out.lobes = field;
+    return out;
 }
 
 LightFieldModel freeSgModel(const FitProblem& problem, SgField field, std::string name,
@@ -236,9 +256,10 @@ LightFieldModel freeSgModel(const FitProblem& problem, SgField field, std::strin
     out.bytesPerTexel =
         double(field.lobeCount) * 12.0; // axis octahedral 2 x 16 bits, the rest fp16
     out.seconds = seconds;
-    out.reconstruct = [&problem, shared = std::make_shared<SgField>(std::move(field))](
-                          const glm::uvec4& texels, const glm::vec4& weights,
-                          std::vector<glm::vec3>& image) {
+    out.lobes = std::make_shared<SgField>(std::move(field));
+    out.reconstruct = [&problem, shared = out.lobes](const glm::uvec4& texels,
+                                                     const glm::vec4& weights,
+                                                     std::vector<glm::vec3>& image) {
         std::fill(image.begin(), image.end(), glm::vec3(0.0f));
         for (std::uint32_t k = 0; k < shared->lobeCount; ++k) {
             glm::vec3 axis(0.0f), amplitude(0.0f);

@@ -1,12 +1,14 @@
 // Other ways to keep a light-field image per texel, to measure free SGs against: raw images,
 // spherical harmonics, SGs of fixed direction. All reconstruct at a bilinear position between four
-// texels, as shading would. O'Donnell. Precomputed Global Illumination in Frostbite. 2018 (SH L1)
+// texels, as shading would.
+// O'Donnell. Precomputed Global Illumination in Frostbite. 2018 (SH L1)
 // Ramamoorthi and Hanrahan. An Efficient Representation for Irradiance Environment Maps. 2001 (SH
 // L2) Pettineo. SG Series, part 5. 2016 (fixed SGs by non-negative least squares)
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,8 @@ struct LightFieldModel
     std::function<void(const glm::uvec4& texels, const glm::vec4& weights,
                        std::vector<glm::vec3>& image)>
         reconstruct;
+    // The same light as lobes, for shading; null for raw images. Spherical harmonics within 1 %.
+    std::shared_ptr<const SgField> lobes;
 };
 
 // The models borrow `problem`, which must outlive them.
@@ -37,10 +41,5 @@ LightFieldModel fixedSgModel(const FitProblem& problem, std::uint32_t lobes);
 // Free lobes, interpolated as shading interpolates them.
 LightFieldModel freeSgModel(const FitProblem& problem, SgField field, std::string name,
                             double seconds);
-
-// min over x >= 0 of x^T gram x - 2 right^T x by cyclic coordinate descent. gram [n, n], right [n];
-// returns x [n]. Columns that are zero in `gram` get 0.
-std::vector<double> solveNonNegative(const std::vector<double>& gram,
-                                     const std::vector<double>& right);
 
 } // namespace strandlight

@@ -3,6 +3,7 @@
 
 #include "engine/base/error.hpp"
 #include "passes/fit_report.hpp"
+#include "passes/least_squares.hpp"
 #include "passes/light_field_baselines.hpp"
 #include "tests/support/synthetic_lightfield.hpp"
 
@@ -47,6 +48,33 @@ TEST_CASE("spherical harmonics keep what lies in their span")
     CHECK(texelRmse(quadratic, sphericalHarmonicModel(quadratic, 3)) < 1.6e-3);
     CHECK(texelRmse(quadratic, sphericalHarmonicModel(quadratic, 2)) > 0.05);
     CHECK_THROWS_AS(sphericalHarmonicModel(linear, 4), Error);
+}
+
+TEST_CASE("baselines as lobes are the same light")
+{
+    const test::SyntheticRoom room;
+    const Atlas atlas = test::gridAtlas(room.grid);
+    const FitProblem problem =
+        buildFitProblem(atlas, test::roomLightfield(room), LightSet::Radiance, {});
+    const auto between = glm::uvec4(14, 15, 26, 27);
+    for (const LightFieldModel& model :
+         {sphericalHarmonicModel(problem, 2), sphericalHarmonicModel(problem, 3),
+          fixedSgModel(problem, 8)}) {
+        CAPTURE(model.name);
+        REQUIRE(model.lobes);
+        const LightFieldModel lobes = freeSgModel(problem, *model.lobes, "lobes", 0.0);
+        std::vector<glm::vec3> image(problem.directionCount()), same(problem.directionCount());
+        model.reconstruct(between, glm::vec4(0.25f), image);
+        lobes.reconstruct(between, glm::vec4(0.25f), same);
+        double difference = 0.0, sum = 0.0;
+        for (std::size_t d = 0; d < image.size(); ++d) {
+            difference += double(glm::dot(image[d] - same[d], image[d] - same[d]));
+            sum += double(glm::dot(image[d], image[d]));
+        }
+        // What 32 lobes of sharpness 2 leave of a quadratic; fixed lobes are lobes already.
+        CHECK(std::sqrt(difference / sum) < (model.name == "8 fixed SGs" ? 1e-5 : 1e-2));
+    }
+    CHECK_FALSE(rawImageModel(problem).lobes);
 }
 
 TEST_CASE("raw images are exact at texels, and the report measures between them")
