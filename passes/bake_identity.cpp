@@ -1,31 +1,12 @@
 #include "passes/bake_identity.hpp"
 
+#include "engine/base/fnv1a.hpp"
+
 namespace strandlight {
-
-namespace {
-
-// FNV-1a over raw bytes: names an input, protects nothing.
-class Hash
-{
-public:
-    void bytes(const void* data, std::size_t count)
-    {
-        const auto* raw = static_cast<const unsigned char*>(data);
-        for (std::size_t i = 0; i < count; ++i)
-            value_ = (value_ ^ raw[i]) * 0x100000001B3ull;
-    }
-    template <class T> void value(const T& v) { bytes(&v, sizeof(T)); }
-    std::uint64_t result() const { return value_; }
-
-private:
-    std::uint64_t value_ = 0xCBF29CE484222325ull;
-};
-
-} // namespace
 
 std::uint64_t hashGeometry(const Scene& scene)
 {
-    Hash hash;
+    Fnv1a hash;
     for (const glm::uvec3& triangle : scene.triangles)
         for (int corner = 0; corner < 3; ++corner)
             hash.value(scene.vertices[triangle[corner]].position);
@@ -34,7 +15,7 @@ std::uint64_t hashGeometry(const Scene& scene)
 
 std::uint64_t hashEnvironment(const Scene& scene)
 {
-    Hash hash;
+    Fnv1a hash;
     if (scene.environment) {
         const CpuImage& image = scene.environment->latLong;
         hash.value(image.width);
@@ -43,9 +24,9 @@ std::uint64_t hashEnvironment(const Scene& scene)
     return scene.environment ? hash.result() : 0;
 }
 
-std::uint64_t hashBake(const Scene& scene, const BakeSettings& s)
+std::uint64_t hashScene(const Scene& scene)
 {
-    Hash hash;
+    Fnv1a hash;
     hash.value(hashGeometry(scene));
     hash.value(hashEnvironment(scene));
     for (const Vertex& vertex : scene.vertices)
@@ -74,6 +55,13 @@ std::uint64_t hashBake(const Scene& scene, const BakeSettings& s)
              {float(light.type), light.range, light.innerConeCos, light.outerConeCos})
             hash.value(v);
     }
+    return hash.result();
+}
+
+std::uint64_t hashBake(const Scene& scene, const BakeSettings& s)
+{
+    Fnv1a hash;
+    hash.value(hashScene(scene));
     for (const std::uint32_t v :
          {s.atlasResolution, s.lightfieldSize, s.lobes, s.environmentLobes, s.samplesPerDirection,
           s.bounces, s.steps, s.seed, std::uint32_t(s.fit)})

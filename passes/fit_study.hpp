@@ -26,8 +26,4 @@ struct FitStudySettings
 // Error on a scene that cannot be captured, Interrupted when the user stops.
 FitReport studyFits(Context& context, const Scene& scene, const FitStudySettings& settings);
 
-// Where a probe lies on the surface: the atlas place in the middle of its four texels. Probes whose
-// middle is off every triangle of their chart, as on a ragged border, are removed.
-std::vector<AtlasTexel> locateProbes(const Atlas& atlas, FitProbes& probes);
-
 } // namespace strandlight

@@ -5,7 +5,7 @@
 
 #include "engine/scene/atlas.hpp"
 #include "engine/scene/scene_loader.hpp"
-#include "passes/fit_study.hpp"
+#include "passes/fit_probes.hpp"
 
 using namespace strandlight;
 
