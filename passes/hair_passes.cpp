@@ -10,7 +10,7 @@ namespace {
 
 static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 96 &&
               sizeof(gpu::HairShadePush) == 52 && sizeof(gpu::HairLight) == 120 &&
-              sizeof(gpu::HairInputPush) == 16);
+              sizeof(gpu::HairInputPush) == 32);
 
 gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view)
 {
@@ -219,25 +219,33 @@ HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, Ha
     return sums;
 }
 
-BufferId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          float depthOffset, float depthScale)
+TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height)
+{
+    const auto padded = [](std::uint32_t side) { return (side + 7) / 8 * 8; };
+    return {1, gpu::kHairInputPlanes, padded(height), padded(width)};
+}
+
+TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
+                          const HairDepthScale& depth, const TensorId& x)
 {
     if (!samples.features.valid() || !samples.shape.valid())
         throw Error("hair: the network's input needs strands drawn with features");
     const glm::uvec3 extent = graph.extent(samples.features);
+    const TensorDesc wanted = hairInputDesc(extent.x, extent.y);
+    if (x.desc != wanted)
+        throw Error("hair: the network's input " + shapeText(x.desc) + " is not " +
+                    shapeText(wanted));
     PassBuilder pass = graph.addComputePass("hair network input");
     pass.sample(samples.features);
     pass.sample(samples.shape);
     pass.sample(exact);
-    const std::uint64_t bytes =
-        std::uint64_t(extent.x) * extent.y * gpu::kHairInputPlanes * sizeof(float);
-    const BufferId planes = pass.write(graph.createBuffer("hair network input", bytes));
-    const gpu::HairInputPush push{extent.x, extent.y, depthOffset, depthScale};
-    pass.dispatch(kernels::hair_input, extent, push,
+    const BufferId planes = pass.write(x.buffer);
+    const gpu::HairInputPush push{x.view(), extent.x, extent.y, depth.offset, depth.scale};
+    pass.dispatch(kernels::hair_input, {wanted.w, wanted.h, 1}, push,
                   {Binding(samples.features, Filter::Nearest),
                    Binding(samples.shape, Filter::Nearest), Binding(exact, Filter::Nearest),
                    planes});
-    return planes;
+    return x.as(planes);
 }
 
 } // namespace strandlight

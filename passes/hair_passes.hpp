@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "compute_nn/tensor.hpp"
 #include "engine/graph/render_graph.hpp"
 #include "passes/hair_strands.hpp"
 
@@ -57,9 +58,13 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
                             float weight);
 
-// fp32 [25, height, width], planes as kHairInputPlanes says: what a network reads. Depth becomes
-// (depth - offset) * scale. Throws Error when the samples came without features.
-BufferId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          float depthOffset, float depthScale);
+// [1,25,H,W] of the network's input: the picture's sides, rounded up to multiples of 8.
+TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height);
+
+// Writes what a network reads into x, planes as kHairInputPlanes says; x is of hairInputDesc and
+// may be a channel range (createUNetInput). Throws Error when x is not, or when the samples came
+// without features.
+TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
+                          const HairDepthScale& depth, const TensorId& x);
 
 } // namespace strandlight

@@ -114,6 +114,12 @@ DepthRange hairDepthRange(const HairStrands& hair, const Scene* opaque, const Ca
     return range;
 }
 
+HairDepthScale hairDepthScale(const HairStrands& hair, const Camera& camera)
+{
+    const HairSphere sphere = boundingSphere(hair);
+    return {glm::length(camera.eye - sphere.centre) - sphere.radius, 0.5f / sphere.radius};
+}
+
 std::uint32_t automaticHairLod(const HairStrands& hair, const Camera& camera, std::uint32_t height)
 {
     double sum = 0.0;

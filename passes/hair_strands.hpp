@@ -46,6 +46,15 @@ HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* o
 // Depth range of hair and opaque triangles together.
 DepthRange hairDepthRange(const HairStrands& hair, const Scene* opaque, const Camera& camera);
 
+// How the network sees depth: (depth - offset) * scale is 0 at the front of the hair's bounding
+// sphere and 1 at its back.
+struct HairDepthScale
+{
+    float offset = 0.0f; // metres
+    float scale = 1.0f;  // per metre
+};
+HairDepthScale hairDepthScale(const HairStrands& hair, const Camera& camera);
+
 // Every how many strands: so many that the drawn ones have about 0.15 pixels of width at the
 // bounds' centre, but never fewer than 4,096 strands, nor wider than 16 times.
 std::uint32_t automaticHairLod(const HairStrands& hair, const Camera& camera, std::uint32_t height);

@@ -1,35 +1,39 @@
-// The samples of the features and shape images as planes of floats: what the filter network reads.
+// The samples of the features and shape images as planes of floats: what the filter network reads. Past the picture's
+// border, up to the size that the network takes, the planes say "no hair".
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shared/hair_types.h"
+#include "nn/nn_math.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DMS features; // brightness, illumination, transparency, depth
 layout(binding = 1) uniform sampler2DMS shape;    // tangent
 layout(binding = 2) uniform sampler2D exact;      // transmittance
-layout(binding = 3, scalar) buffer Planes { float planes[]; };
+layout(binding = 3, scalar) writeonly buffer Planes { float planes[]; };
 layout(push_constant, scalar) uniform Push { HairInputPush push; };
 
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (pixel.x >= int(push.width) || pixel.y >= int(push.height)) {
+    if (pixel.x >= int(push.planes.width) || pixel.y >= int(push.planes.height)) {
         return;
     }
-    uint plane = push.width * push.height;
-    uint at = uint(pixel.y) * push.width + uint(pixel.x);
+    uint plane = push.planes.width * push.planes.height;
+    uint at = push.planes.offset + uint(pixel.y) * push.planes.width + uint(pixel.x);
+    bool inside = pixel.x < int(push.width) && pixel.y < int(push.height);
+    ivec2 from = inside ? pixel : ivec2(0);
     for (int s = 0; s < 4; ++s) {
-        vec4 value = texelFetch(features, pixel, s);
-        vec2 tangent = texelFetch(shape, pixel, s).xy;
-        float depth = value.z < 0.5 ? (value.w - push.depthOffset) * push.depthScale : 0.0;
-        uint first = uint(s) * plane + at;
-        planes[first] = value.x;
+        vec4 value = inside ? texelFetch(features, from, s) : vec4(0.0, 0.0, 1.0, 0.0);
+        // The tangent's sign says where the root is, which must not matter: the double angle. (0,0) without hair.
+        vec2 along = inside ? texelFetch(shape, from, s).xy : vec2(0.0);
+        uint first = at + uint(s) * plane;
+        planes[first] = nnLog1p(value.x < 0.0 ? 0.0 : value.x);
         planes[first + 4u * plane] = value.y;
         planes[first + 8u * plane] = value.z;
-        planes[first + 12u * plane] = depth;
-        planes[first + 16u * plane] = tangent.x;
-        planes[first + 20u * plane] = tangent.y;
+        planes[first + 12u * plane] = value.z < 0.5 ? (value.w - push.depthOffset) * push.depthScale : 0.0;
+        planes[first + 16u * plane] = along.x * along.x - along.y * along.y;
+        planes[first + 20u * plane] = 2.0 * along.x * along.y;
     }
-    planes[24u * plane + at] = texelFetch(exact, pixel, 0).x;
+    planes[at + 24u * plane] = inside ? texelFetch(exact, from, 0).x : 1.0;
 }

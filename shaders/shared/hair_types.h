@@ -11,8 +11,10 @@
 
 #ifdef __cplusplus
 #include "shaders/shared/gpu_types.h"
+#include "shaders/shared/nn_types.h"
 #else
 #include "shared/gpu_types.h"
+#include "shared/nn_types.h"
 #endif
 
 STRANDLIGHT_SHARED_BEGIN
@@ -84,12 +86,13 @@ struct HairResolvePush
 };
 
 // Planes of the network's input, [25, height, width]: value v of sample s is plane 4 v + s; the last is the exact
-// transmittance. Values: brightness, illumination, transparency, depth, tangent x, tangent y.
+// transmittance. Values: ln(1 + brightness), illumination, transparency, depth, tangent as cos and sin of its double angle.
 STRANDLIGHT_CONST(uint) kHairInputPlanes = 25u;
 
 struct HairInputPush
 {
-    uint width;
+    TensorView planes; // the picture's size or more
+    uint width;        // of the picture
     uint height;
     float depthOffset; // planes hold (depth - offset) * scale, 0 without hair
     float depthScale;

@@ -16,7 +16,8 @@ using namespace strandlight;
 
 namespace {
 
-constexpr std::uint32_t kSide = 32;
+constexpr std::uint32_t kSide = 30; // not a multiple of 8
+constexpr std::uint32_t kPadded = 32;
 constexpr float kDistance = 100.0f;
 
 Camera camera()
@@ -40,13 +41,13 @@ HairStrands diagonal()
 
 struct Input
 {
-    std::vector<float> planes; // [25, kSide, kSide]
+    std::vector<float> planes; // [25, kPadded, kPadded]
     std::vector<glm::vec4> shaded;
     CpuImage average;
 
     float at(std::uint32_t value, std::uint32_t s, std::uint32_t x, std::uint32_t y) const
     {
-        return planes[((4u * value + s) * kSide + y) * kSide + x];
+        return planes[((4u * value + s) * kPadded + y) * kPadded + x];
     }
 };
 
@@ -72,14 +73,17 @@ Input networkInput(float alpha)
     const HairSampleIds samples =
         addHairStrandsPass(graph, buffers, shaded, view, settings, 1, true, true);
     const ImageId exact = addHairCoveragePass(graph, buffers, view);
-    const BufferId planes = addHairInputPass(graph, samples, exact, kDistance - 50.0f, 0.01f);
+    const TensorId planes =
+        addHairInputPass(graph, samples, exact, {kDistance - 50.0f, 0.01f},
+                         createTensor(graph, "planes", hairInputDesc(kSide, kSide)));
     Image hairSum(context, {kSide, kSide, 1, Format::RGBA32F, 1}, "hair sum");
     Image behind(context, {kSide, kSide, 1, Format::RGBA32F, 1}, "behind sum");
     addHairResolvePass(graph, samples, {graph.importImage(hairSum), graph.importImage(behind)},
                        1.0f);
-    graph.output(planes);
+    graph.output(planes.buffer);
     graph.run();
-    return {graph.read<float>(planes), buffers.shaded.downloadAs<glm::vec4>(), hairSum.download()};
+    return {graph.read<float>(planes.buffer), buffers.shaded.downloadAs<glm::vec4>(),
+            hairSum.download()};
 }
 
 } // namespace
@@ -87,26 +91,29 @@ Input networkInput(float alpha)
 TEST_CASE("hair network input: values of a ribbon and of nothing")
 {
     const Input input = networkInput(1.0f);
-    REQUIRE(input.planes.size() == std::size_t(gpu::kHairInputPlanes) * kSide * kSide);
+    REQUIRE(input.planes.size() == std::size_t(gpu::kHairInputPlanes) * kPadded * kPadded);
     const glm::vec4 light = 0.5f * (input.shaded[0] + input.shaded[1]);
     const float brightness = glm::dot(glm::vec3(light), glm::vec3(0.2126f, 0.7152f, 0.0722f));
     for (std::uint32_t s = 0; s < 4; ++s) {
         CAPTURE(s);
         // In the middle; half floats keep 11 bits, the light is that of the strand's middle.
-        CHECK(input.at(0, s, 16, 16) == doctest::Approx(brightness).epsilon(0.02));
+        CHECK(input.at(0, s, 16, 16) == doctest::Approx(std::log1p(brightness)).epsilon(0.02));
         CHECK(input.at(1, s, 16, 16) == 1.0f);
         CHECK(input.at(2, s, 16, 16) == 0.0f);
         CHECK(input.at(3, s, 16, 16) == doctest::Approx(0.5f).epsilon(2e-3));
-        // Up to the right is y down negative.
-        CHECK(input.at(4, s, 16, 16) == doctest::Approx(2.0 / std::sqrt(5.0)).epsilon(1e-3));
-        CHECK(input.at(5, s, 16, 16) == doctest::Approx(-1.0 / std::sqrt(5.0)).epsilon(1e-3));
-        // In a corner without hair.
-        for (const std::uint32_t value : {0u, 1u, 3u, 4u, 5u})
-            CHECK(input.at(value, s, 1, 1) == 0.0f);
-        CHECK(input.at(2, s, 1, 1) == 1.0f);
+        // Up to the right is y down negative: (2, -1) / sqrt 5, of which the double angle has
+        // cosine (4 - 1) / 5 and sine 2 * 2 * -1 / 5. The other way round it would have the same.
+        CHECK(input.at(4, s, 16, 16) == doctest::Approx(0.6).epsilon(2e-3));
+        CHECK(input.at(5, s, 16, 16) == doctest::Approx(-0.8).epsilon(2e-3));
+        // In a corner without hair, and past the border right of the ribbon's end.
+        for (const glm::uvec2 empty : {glm::uvec2(1, 1), glm::uvec2(31, 8), glm::uvec2(4, 31)}) {
+            for (const std::uint32_t value : {0u, 1u, 3u, 4u, 5u})
+                CHECK(input.at(value, s, empty.x, empty.y) == 0.0f);
+            CHECK(input.at(2, s, empty.x, empty.y) == 1.0f);
+            CHECK(input.at(6, 0, empty.x, empty.y) == 1.0f);
+        }
     }
     CHECK(input.at(6, 0, 16, 16) == 0.0f);
-    CHECK(input.at(6, 0, 1, 1) == 1.0f);
 }
 
 TEST_CASE("hair network input: the samples are those of the average")
@@ -149,5 +156,6 @@ TEST_CASE("hair network input: strands without features are refused")
 {
     RenderGraph graph(test::context());
     const ImageId any = graph.createImage("any", {4, 4, 1, Format::R32F, 1});
-    CHECK_THROWS_AS(addHairInputPass(graph, HairSampleIds{}, any, 0.0f, 1.0f), Error);
+    const TensorId planes = createTensor(graph, "planes", hairInputDesc(4, 4));
+    CHECK_THROWS_AS((void)addHairInputPass(graph, HairSampleIds{}, any, {}, planes), Error);
 }

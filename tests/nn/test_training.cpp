@@ -88,7 +88,7 @@ TEST_CASE("encoder: twenty training steps follow the twin, and two runs have the
     }
 }
 
-TEST_CASE("U-Net: twenty training steps follow the twin, whatever the levels")
+TEST_CASE("U-Net: training steps follow the twin, whatever the levels")
 {
     for (const UNetDesc& net : {UNetDesc{}, hairUNet(HairUNetSize::Small), benchmarkUNet()}) {
         const std::uint32_t side = 1u << net.levels();
@@ -99,7 +99,8 @@ TEST_CASE("U-Net: twenty training steps follow the twin, whatever the levels")
         Parameters parameters(context(), net.parameters(), 9);
         std::vector<double> values = convert<double>(net.parameters().initialValues(9));
         std::vector<double> m(values.size(), 0.0), v(values.size(), 0.0);
-        for (std::uint32_t step = 1; step <= kSteps; ++step) {
+        const std::uint32_t steps = net.levels() == 2 ? kSteps : 5; // the twin takes its time
+        for (std::uint32_t step = 1; step <= steps; ++step) {
             RenderGraph graph(context());
             ParameterIds ids(graph, parameters);
             const UNetStep result =
