@@ -56,4 +56,7 @@ private:
 // Subcommands, one source file each.
 Command addBenchKernels(CLI::App& bench);
 
+// What they run; the result is the exit code.
+int benchKernels(const BenchOptions& options);
+
 } // namespace strandlight::cli

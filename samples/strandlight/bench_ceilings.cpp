@@ -6,6 +6,7 @@
 #include "kernels.gen.hpp"
 #include "samples/strandlight/bench_kernels.hpp"
 #include "shaders/shared/bench_types.h"
+#include "shaders/shared/rng.h"
 
 namespace strandlight::cli {
 
@@ -66,8 +67,8 @@ KernelMeasurement measureTriad(Context& context, bool quick)
     pass.read(bId);
     pass.read(cId);
     const BufferId result = pass.write(graph.importBuffer(a));
-    pass.dispatch(kernels::bench_triad, {count / gpu::kBenchTriadTile, 1, 1},
-                  gpu::BenchTriadPush{factor}, {bId, cId, result});
+    pass.dispatch(kernels::bench_triad, {count / 4, 1, 1}, gpu::BenchTriadPush{factor},
+                  {bId, cId, result});
 
     KernelMeasurement m;
     m.timing = timeGraph(graph, kRuns);
@@ -83,6 +84,14 @@ KernelMeasurement measureTriad(Context& context, bool quick)
 }
 
 } // namespace
+
+std::vector<float> randomValues(std::size_t count, std::uint32_t seed)
+{
+    std::vector<float> values(count);
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = 2.0f * gpu::uniform3(std::uint32_t(i), 0, 0, seed).x - 1.0f;
+    return values;
+}
 
 double normError(const std::vector<double>& got, const std::vector<double>& wanted)
 {

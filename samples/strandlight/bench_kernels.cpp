@@ -28,10 +28,21 @@ Json describe(const std::string& name, const KernelMeasurement& m, const Ceiling
         row["gb_per_s"] = gigabytes;
         row["of_triad"] = gigabytes / ceilings.gigabytes();
     }
+    row.update(m.more);
     return row;
 }
 
-int run(const BenchOptions& o)
+std::vector<KernelCase> allCases()
+{
+    std::vector<KernelCase> cases;
+    addConvBenchCases(cases);
+    addNetworkBenchCases(cases);
+    return cases;
+}
+
+} // namespace
+
+int benchKernels(const BenchOptions& o)
 {
     Context context = openDevice(o.device);
     BenchReport report("bench kernels", o, context);
@@ -41,13 +52,25 @@ int run(const BenchOptions& o)
         {"multiply_add", "chains of a*b+c in registers, best run; of_multiply_add is over this"},
         {"triad_gb_per_s", ceilings.gigabytes()},
         {"triad", "a = b + s c from memory, 12 bytes an element, best run; of_triad is over this"}};
+    if (o.quick)
+        std::printf("quick: images of a quarter of the size named, two runs each\n");
     report.add(describe("ceiling multiply-add", ceilings.multiplyAdd, ceilings));
     report.add(describe("ceiling triad", ceilings.triad, ceilings));
+    const std::vector<KernelCase> cases = allCases();
+    Progress progress("bench kernels", cases.size());
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        throwIfInterrupted();
+        progress.update(i);
+        if (!report.wants(cases[i].name))
+            continue;
+        const KernelMeasurement m = cases[i].measure(context, o);
+        requireCheck(cases[i].name, m);
+        report.add(describe(cases[i].name, m, ceilings));
+    }
+    progress.update(cases.size());
     report.finish();
     return 0;
 }
-
-} // namespace
 
 void requireCheck(const std::string& name, const KernelMeasurement& m)
 {
@@ -67,7 +90,7 @@ Command addBenchKernels(CLI::App& bench)
     addBenchOptions(*app, *o);
     addExamples(*app, "  strandlight bench kernels --json kernels.json --csv kernels.csv\n"
                       "  strandlight bench kernels --filter conv");
-    return {app, [o] { return run(*o); }};
+    return {app, [o] { return benchKernels(*o); }};
 }
 
 } // namespace strandlight::cli

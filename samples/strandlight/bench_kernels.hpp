@@ -15,8 +15,9 @@ struct KernelMeasurement
     double error = 0.0;
     double tolerance = 5e-6; // fp32 sums of a thousand products against double: measured below 1e-6
     Timing timing;
-    double flops = 0.0; // a multiply and an add are two; 0: not counted
-    double bytes = 0.0; // read and written once each; 0: not counted
+    double flops = 0.0;         // a multiply and an add are two; 0: not counted
+    double bytes = 0.0;         // read and written once each; 0: not counted
+    Json more = Json::object(); // further columns of the row
 };
 
 struct KernelCase
@@ -25,8 +26,15 @@ struct KernelCase
     std::function<KernelMeasurement(Context&, const BenchOptions&)> measure;
 };
 
+// By subject, one source file each.
+void addConvBenchCases(std::vector<KernelCase>& cases);
+void addNetworkBenchCases(std::vector<KernelCase>& cases);
+
 // Throws Error, naming the case, when the check of `measurement` has not passed.
 void requireCheck(const std::string& name, const KernelMeasurement& measurement);
+
+// Uniform in [-1, 1), a pure function of (seed, i).
+std::vector<float> randomValues(std::size_t count, std::uint32_t seed);
 
 // |got - wanted| / |wanted| in the Euclidean norm; NaN anywhere gives NaN.
 double normError(const std::vector<double>& got, const std::vector<double>& wanted);

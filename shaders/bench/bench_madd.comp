@@ -1,5 +1,4 @@
 // The arithmetic ceiling that other kernels are held against: chains of multiply-add in registers, no memory.
-// On the software device every loop turn blends what it carries with the lane mask, so a turn is long.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require

@@ -10,11 +10,11 @@
 
 STRANDLIGHT_SHARED_BEGIN
 
-// Independent chains hide the latency of an addition after a multiplication; steps are unrolled so that
-// the loop itself costs nothing.
-STRANDLIGHT_CONST(uint) kBenchChains = 16u;
+// Independent chains hide the latency of an addition after a multiplication; chains, factor and addend fill the
+// sixteen vector registers of lavapipe's code (with 16 chains it spills and is 2.5 times slower). Steps are unrolled:
+// every turn of a loop blends what it carries with the lane mask.
+STRANDLIGHT_CONST(uint) kBenchChains = 14u;
 STRANDLIGHT_CONST(uint) kBenchUnroll = 16u;
-STRANDLIGHT_CONST(uint) kBenchTriadTile = 16u; // elements of one invocation
 
 struct BenchLoopPush
 {
@@ -26,6 +26,17 @@ struct BenchLoopPush
 struct BenchTriadPush
 {
     float factor;
+};
+
+// A convolution of stride 1 over one image [I,H,W], square kernel.
+struct BenchConvPush
+{
+    uint inChannels;
+    uint outChannels;
+    uint height;
+    uint width;
+    uint kernel;
+    uint padding;
 };
 
 STRANDLIGHT_SHARED_END

@@ -1,0 +1,131 @@
+// Whole networks of `strandlight bench kernels`: forward pass and training step.
+#include "compute_nn/reference/networks.hpp"
+#include "compute_nn/unet.hpp"
+#include "samples/strandlight/bench_conv_twin.hpp"
+#include "samples/strandlight/bench_kernels.hpp"
+
+namespace strandlight::cli {
+
+namespace {
+
+constexpr std::uint32_t kSeed = 1;
+constexpr std::uint32_t kRuns = 9;
+
+struct NetworkCase
+{
+    std::string name;
+    UNetDesc net;
+    TensorDesc input; // [1,in,H,W]
+};
+
+// Multiply-adds of the convolutions alone, twice.
+double forwardFlops(const UNetDesc& net, const TensorDesc& x)
+{
+    double flops = convFlops(net.last(), net.level(0, x));
+    for (std::uint32_t l = net.head > 0 ? 0 : 1; l <= net.levels(); ++l) {
+        TensorDesc from = l == 0 ? x : net.level(l - 1, x);
+        from.c = net.encoder(l).in;
+        flops += convFlops(net.encoder(l), from);
+    }
+    for (std::uint32_t l = 0; l < net.levels(); ++l)
+        flops += convFlops(net.decoder(l), net.level(l + 1, x));
+    return flops;
+}
+
+TensorDesc outputOf(const NetworkCase& c, const TensorDesc& x)
+{
+    return {x.n, c.net.out, x.h, x.w};
+}
+
+// Forward pass of a small image against the whole twin; the kernels are those of the large one.
+double forwardError(Context& context, const NetworkCase& c, Parameters& parameters)
+{
+    const std::uint32_t side = 1u << c.net.levels();
+    const TensorDesc small{1, c.net.in, 3 * side, 5 * side};
+    const std::vector<float> x = randomValues(small.elements(), 4);
+    RenderGraph graph(context);
+    const ParameterIds ids(graph, parameters);
+    const UNetValues values = unetForward(graph, c.net, ids, uploadTensor(graph, "x", small, x));
+    graph.output(values.y.buffer);
+    graph.execute();
+    const std::vector<float> y = graph.read<float>(values.y.buffer), w = parameters.download();
+    const std::vector<double> target(outputOf(c, small).elements(), 0.0),
+        weights(w.begin(), w.end()), input(x.begin(), x.end());
+    const auto twin = reference::unet<double>(c.net, weights, small, input, target);
+    return normError({y.begin(), y.end()}, twin.output);
+}
+
+Timing timeForward(Context& context, const NetworkCase& c, Parameters& parameters,
+                   const TensorDesc& x, std::uint32_t runs)
+{
+    RenderGraph graph(context);
+    const ParameterIds ids(graph, parameters);
+    const TensorId input = uploadTensor(graph, "x", x, randomValues(x.elements(), 5));
+    graph.output(unetForward(graph, c.net, ids, input).y.buffer);
+    return timeGraph(graph, runs);
+}
+
+Timing timeStep(Context& context, const NetworkCase& c, Parameters& parameters, const TensorDesc& x,
+                std::uint32_t runs)
+{
+    RenderGraph graph(context);
+    ParameterIds ids(graph, parameters);
+    const TensorDesc y = outputOf(c, x);
+    const TensorId input = uploadTensor(graph, "x", x, randomValues(x.elements(), 5));
+    const TensorId target = uploadTensor(graph, "target", y, randomValues(y.elements(), 6));
+    addUNetTrainingStep(graph, c.net, ids, input, target, {}, 1);
+    return timeGraph(graph, runs);
+}
+
+TensorDesc inputOf(const NetworkCase& c, bool quick)
+{
+    TensorDesc x = c.input;
+    if (quick)
+        x.h = x.w = 8u << c.net.levels();
+    return x;
+}
+
+KernelMeasurement measureForward(Context& context, const NetworkCase& c, const BenchOptions& o)
+{
+    Parameters parameters(context, c.net.parameters(), kSeed);
+    const TensorDesc x = inputOf(c, o.quick);
+    KernelMeasurement m;
+    m.error = forwardError(context, c, parameters);
+    m.timing = timeForward(context, c, parameters, x, o.quick ? 2 : kRuns);
+    m.flops = forwardFlops(c.net, x);
+    return m;
+}
+
+// The gradients of this step are what tests/nn/test_training.cpp traces; here its forward part is
+// checked.
+KernelMeasurement measureStep(Context& context, const NetworkCase& c, const BenchOptions& o)
+{
+    KernelMeasurement m = measureForward(context, c, o);
+    const double forward = m.timing.median;
+    Parameters parameters(context, c.net.parameters(), kSeed);
+    const TensorDesc x = inputOf(c, o.quick);
+    m.timing = timeStep(context, c, parameters, x, o.quick ? 2 : kRuns);
+    // Backward: a data and a weight gradient of each layer, but no data gradient of the first.
+    m.flops = 3.0 * forwardFlops(c.net, x) - convFlops(c.net.encoder(c.net.head > 0 ? 0 : 1), x);
+    m.more["over_forward"] = m.timing.median / forward;
+    return m;
+}
+
+} // namespace
+
+void addNetworkBenchCases(std::vector<KernelCase>& cases)
+{
+    const NetworkCase networks[] = {
+        {"U-Net 24-16-32-64-64-3 640x384", benchmarkUNet(), {1, 24, 384, 640}},
+        {"hair U-Net 640x384", hairUNet(), {1, 25, 384, 640}}};
+    for (const NetworkCase& c : networks) {
+        cases.push_back({c.name + " forward", [c](Context& context, const BenchOptions& o) {
+                             return measureForward(context, c, o);
+                         }});
+        cases.push_back({c.name + " training step", [c](Context& context, const BenchOptions& o) {
+                             return measureStep(context, c, o);
+                         }});
+    }
+}
+
+} // namespace strandlight::cli
