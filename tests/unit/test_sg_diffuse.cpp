@@ -5,85 +5,10 @@
 
 #include <doctest/doctest.h>
 
+#include "passes/shading_study.hpp"
 #include "shaders/shared/sg_diffuse.h"
 
 namespace gpu = strandlight::gpu;
-
-namespace {
-
-// exp(-|x|) I0(x); the azimuthal integral of an SG is 2 pi exp(..) I0(..).
-double scaledBesselI0(double x)
-{
-    x = std::abs(x);
-    if (x < 15.0)
-        return std::cyl_bessel_i(0.0, x) * std::exp(-x);
-    double term = 1.0;
-    double sum = 1.0;
-    for (int k = 1; k < 40; ++k) {
-        const double ratio = (2.0 * k - 1.0) * (2.0 * k - 1.0) / (k * 8.0 * x);
-        if (ratio >= 1.0)
-            break;
-        term *= ratio;
-        sum += term;
-    }
-    return sum / std::sqrt(2.0 * M_PI * x);
-}
-
-// Integral over the hemisphere of the SG times cos^power, by the midpoint rule in the polar angle,
-// panels gathered around the lobe's own angle so that sharp lobes are resolved.
-double quadrature(double lambda, double cosine, int power)
-{
-    const double axis = std::acos(cosine);
-    const double sine = std::sin(axis);
-    const double reach = 12.0 / std::sqrt(lambda);
-    const double low = std::max(0.0, axis - reach);
-    const double high = std::min(M_PI / 2.0, axis + reach);
-    if (low >= high)
-        return 0.0;
-    constexpr int kPanels = 1500;
-    const double h = (high - low) / kPanels;
-    double sum = 0.0;
-    for (int i = 0; i < kPanels; ++i) {
-        const double theta = low + h * (i + 0.5);
-        const double z = std::cos(theta);
-        const double r = std::sin(theta);
-        const double exponent = lambda * (std::cos(theta - axis) - 1.0); // = lambda (c z + s r - 1)
-        sum += (power == 1 ? z : 1.0) * r * std::exp(exponent) * scaledBesselI0(lambda * sine * r);
-    }
-    return 2.0 * M_PI * h * sum;
-}
-
-struct Errors
-{
-    double tokuyoshi = 0.0;
-    double hill = 0.0;
-    double wang = 0.0;
-    double hemisphere = 0.0;
-};
-
-Errors worstErrors(double lambda)
-{
-    Errors worst;
-    const double energy = -2.0 * M_PI * std::expm1(-2.0 * lambda) / lambda;
-    for (int i = 0; i <= 40; ++i) {
-        const double cosine = std::clamp(-1.0 + 0.05 * i, -1.0, 1.0);
-        const double exact = quadrature(lambda, cosine, 1);
-        const double half = quadrature(lambda, cosine, 0);
-        const float l = float(lambda);
-        const float c = float(cosine);
-        const auto raise = [&](double& slot, float value, double reference) {
-            REQUIRE(std::isfinite(value));
-            slot = std::max(slot, std::abs(value - reference) / energy);
-        };
-        raise(worst.tokuyoshi, gpu::sgIrradiance(l, c), exact);
-        raise(worst.hill, gpu::sgIrradianceHill(l, c), exact);
-        raise(worst.wang, gpu::sgIrradianceWang(l, c), exact);
-        raise(worst.hemisphere, gpu::sgHemisphereIntegral(l, c), half);
-    }
-    return worst;
-}
-
-} // namespace
 
 TEST_CASE("sg diffuse: error functions")
 {
@@ -111,7 +36,7 @@ TEST_CASE("sg diffuse: irradiance against quadrature for every sharpness")
     double hemisphere = 0.0;
     for (const double lambda :
          {1e-3, 1e-2, 0.1, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 128.0, 512.0, 2048.0, 1e4, 1e5}) {
-        const Errors e = worstErrors(lambda);
+        const strandlight::DiffuseErrors e = strandlight::diffuseErrors(lambda);
         MESSAGE("lambda " << lambda << ": Tokuyoshi 2024 " << e.tokuyoshi << ", Hill " << e.hill
                           << ", Wang " << e.wang << ", hemisphere " << e.hemisphere);
         worst = std::max(worst, e.tokuyoshi);

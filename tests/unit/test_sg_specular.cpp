@@ -9,113 +9,12 @@
 
 #include <doctest/doctest.h>
 
+#include "passes/shading_study.hpp"
 #include "passes/specular_lut.hpp"
 
-namespace gpu = strandlight::gpu;
+using namespace strandlight;
 using glm::dvec3;
 using glm::vec3;
-
-namespace {
-
-// Directions and weights of one GGX slice (n = z, view in the xz plane), F = 1: sum of weight
-// g(direction) is the reflected radiance under illumination g.
-struct Reference
-{
-    std::vector<dvec3> directions;
-    std::vector<double> weights;
-    std::vector<double> schlick; // (1 - v.h)^5
-};
-
-Reference sampleReference(double alpha, double cosView)
-{
-    constexpr int kRadial = 128;
-    constexpr int kAzimuth = 128;
-    const double a2 = alpha * alpha;
-    const dvec3 view(std::sqrt(1.0 - cosView * cosView), 0.0, cosView);
-    Reference reference;
-    for (int i = 0; i < kRadial; ++i)
-        for (int j = 0; j < kAzimuth; ++j) {
-            const double t = (i + 0.5) / kRadial;
-            const double u = 1.0 - (1.0 - t) * (1.0 - t);
-            const double phi = 2.0 * M_PI * (j + 0.5) / kAzimuth;
-            const double c = std::sqrt((1.0 - u) / (1.0 + (a2 - 1.0) * u));
-            const double s = std::sqrt(1.0 - c * c);
-            const dvec3 h(s * std::cos(phi), s * std::sin(phi), c);
-            const double vh = glm::dot(view, h);
-            const dvec3 l = h * (2.0 * vh) - view;
-            if (vh <= 0.0 || l.z <= 0.0)
-                continue;
-            const double visibility = 0.5 / (l.z * std::sqrt(a2 + (1.0 - a2) * cosView * cosView) +
-                                             cosView * std::sqrt(a2 + (1.0 - a2) * l.z * l.z));
-            reference.directions.push_back(l);
-            reference.weights.push_back(visibility * l.z * 4.0 * vh / c * 2.0 * (1.0 - t) /
-                                        (kRadial * kAzimuth));
-            reference.schlick.push_back(std::pow(1.0 - vh, 5.0));
-        }
-    return reference;
-}
-
-double reflect(const Reference& reference, const dvec3& axis, double lambda, double f0 = 1.0)
-{
-    double sum = 0.0;
-    for (std::size_t i = 0; i < reference.weights.size(); ++i) {
-        const dvec3 chord = reference.directions[i] - axis;
-        const double fresnel = f0 + (1.0 - f0) * reference.schlick[i];
-        sum += fresnel * reference.weights[i] * std::exp(-0.5 * lambda * glm::dot(chord, chord));
-    }
-    return sum;
-}
-
-struct Totals
-{
-    double reference = 0.0;
-    double asg = 0.0;
-    double ndf = 0.0;
-    double mixture = 0.0;
-    double dielectricReference = 0.0; // f0 = 0.04
-    double dielectric = 0.0;
-};
-
-// Sums of |approximation - reference| over `count` Fibonacci light axes down to 12 degrees below
-// the horizon.
-Totals compare(double alpha, double cosView, double lambda, int count)
-{
-    const Reference reference = sampleReference(alpha, cosView);
-    const vec3 normal(0.0f, 0.0f, 1.0f);
-    const vec3 view(float(std::sqrt(1.0 - cosView * cosView)), 0.0f, float(cosView));
-    const gpu::SgMixture mixture = strandlight::specularTable().mixture(float(alpha), normal, view);
-    Totals totals;
-    for (int i = 0; i < count; ++i) {
-        const double z = 1.0 - 1.2 * (i + 0.5) / count;
-        const double r = std::sqrt(1.0 - z * z);
-        const dvec3 axis(r * std::cos(i * 2.399963), r * std::sin(i * 2.399963), z);
-        const double exact = reflect(reference, axis, lambda);
-        const vec3 a(axis);
-        const float l = float(lambda);
-        totals.reference += exact;
-        totals.asg += std::abs(gpu::sgSpecularAsg(float(alpha), normal, view, a, l) - exact);
-        totals.ndf += std::abs(gpu::sgSpecularNdfFilter(float(alpha), normal, view, a, l) - exact);
-        const glm::vec2 reflected = gpu::sgSpecularMixture(mixture, normal, view, a, l);
-        totals.mixture += std::abs(reflected.x + reflected.y - exact);
-        const double dielectric = reflect(reference, axis, lambda, 0.04);
-        totals.dielectricReference += dielectric;
-        totals.dielectric += std::abs(0.04 * reflected.x + reflected.y - dielectric);
-    }
-    return totals;
-}
-
-Totals operator+(Totals a, const Totals& b)
-{
-    a.reference += b.reference;
-    a.asg += b.asg;
-    a.ndf += b.ndf;
-    a.mixture += b.mixture;
-    a.dielectricReference += b.dielectricReference;
-    a.dielectric += b.dielectric;
-    return a;
-}
-
-} // namespace
 
 TEST_CASE("sg specular: error over roughness x sharpness x view")
 {
@@ -129,9 +28,7 @@ TEST_CASE("sg specular: error over roughness x sharpness x view")
         "alpha lambda |   ASG   NDF mixture f0=0.04\n";
     for (const double alpha : {0.05, 0.1, 0.2, 0.4, 0.64, 0.9})
         for (const double lambda : {1.0, 4.0, 16.0, 64.0, 256.0}) {
-            Totals totals;
-            for (const double degrees : {0.0, 30.0, 60.0, 80.0})
-                totals = totals + compare(alpha, std::cos(degrees * M_PI / 180.0), lambda, 60);
+            const SpecularErrors totals = specularErrors(alpha, lambda);
             char line[128];
             std::snprintf(line, sizeof line, "%5.2f %6.0f | %5.3f %5.3f   %5.3f   %5.3f\n", alpha,
                           lambda, totals.asg / totals.reference, totals.ndf / totals.reference,
@@ -159,7 +56,8 @@ TEST_CASE("sg specular: table cells are not special")
     double worst = 0.0;
     for (const double alpha : {0.023, 0.033, 0.07, 0.15, 0.3, 0.52, 0.8, 1.0})
         for (const double degrees : {1.4, 20.0, 44.0, 71.0, 83.0, 87.0}) {
-            const Totals totals = compare(alpha, std::cos(degrees * M_PI / 180.0), 16.0, 40);
+            const SpecularErrors totals =
+                specularErrors(alpha, std::cos(degrees * M_PI / 180.0), 16.0, 40);
             CAPTURE(alpha);
             CAPTURE(degrees);
             CHECK(totals.mixture / totals.reference < 0.2);
@@ -175,11 +73,10 @@ TEST_CASE("sg specular: a constant environment returns the directional albedo")
         for (const float degrees : {5.0f, 40.0f, 75.0f}) {
             const float cosView = std::cos(glm::radians(degrees));
             const vec3 view(std::sin(glm::radians(degrees)), 0.0f, cosView);
-            const gpu::SgMixture mixture =
-                strandlight::specularTable().mixture(alpha, normal, view);
-            const Reference reference = sampleReference(alpha, cosView);
-            const double albedo = reflect(reference, dvec3(0.0, 0.0, 1.0), 0.0);
-            const double dielectric = reflect(reference, dvec3(0.0, 0.0, 1.0), 0.0, 0.04);
+            const gpu::SgMixture mixture = specularTable().mixture(alpha, normal, view);
+            const GgxQuadrature reference{double(alpha), double(cosView)};
+            const double albedo = reference.reflect(dvec3(0.0, 0.0, 1.0), 0.0);
+            const double dielectric = reference.reflect(dvec3(0.0, 0.0, 1.0), 0.0, 0.04);
             const glm::vec2 white = gpu::sgSpecularMixture(mixture, normal, view, normal, 0.0f);
             CHECK(white.x + white.y == doctest::Approx(albedo).epsilon(0.02));
             CHECK(mixture.scale * 0.04 + mixture.bias == doctest::Approx(dielectric).epsilon(0.04));
@@ -210,8 +107,7 @@ TEST_CASE("sg specular: stress values are finite and not negative")
     for (const float alpha : {0.0f, 1e-6f, 1e-3f, 0.5f, 1.0f})
         for (const float cosView : {0.0f, 1e-6f, 1e-3f, 0.5f, 1.0f}) {
             const vec3 view(std::sqrt(1.0f - cosView * cosView), 0.0f, cosView);
-            const gpu::SgMixture mixture =
-                strandlight::specularTable().mixture(alpha, normal, view);
+            const gpu::SgMixture mixture = specularTable().mixture(alpha, normal, view);
             for (const float lambda : {0.0f, 1e-6f, 1.0f, 1e3f, 1e5f})
                 for (const vec3 axis : {normal, -normal, vec3(1.0f, 0.0f, 0.0f), -view, view}) {
                     CAPTURE(alpha);
