@@ -34,6 +34,8 @@ Timing timingOf(std::vector<double> milliseconds); // throws Error when empty
 // sum of its passes by the device's clock. Throws Interrupted between runs.
 Timing timeGraph(RenderGraph& graph, std::uint32_t runs);
 
+std::string rowsText(const Json& rows); // as a table, columns as below
+
 // Rows are flat JSON objects; columns are their keys in the order of first appearance.
 class BenchReport
 {
@@ -45,7 +47,8 @@ public:
     Json& about() { return about_; }           // what the JSON says beside the rows
     void add(Json row) { rows_.push_back(std::move(row)); }
     const Json& rows() const { return rows_; }
-    void finish() const; // prints the table, writes --json and --csv; throws Error without rows
+    void finish() const; // prints the table and writes; throws Error without rows
+    void write() const;  // --json and --csv
 
 private:
     BenchOptions options_;
@@ -55,6 +58,9 @@ private:
 
 // Subcommands, one source file each.
 Command addBenchKernels(CLI::App& bench);
+Command addBenchGi(CLI::App& bench);
+Command addBenchAll(CLI::App& bench);
+Command addBenchPage(CLI::App& bench);
 
 // What they run; the result is the exit code.
 int benchKernels(const BenchOptions& options);

@@ -1,6 +1,7 @@
 // Rows of a benchmark as a table, JSON and CSV; timing of graphs.
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 
 #include "engine/base/error.hpp"
 #include "engine/base/file.hpp"
@@ -65,24 +66,12 @@ std::string csvOf(const Json& rows)
     return text + '\n';
 }
 
-void print(const Json& rows)
+std::string utcNow()
 {
-    std::vector<std::string> lines(rows.size() + 1);
-    for (const std::string& column : columnsOf(rows)) {
-        std::vector<std::string> cells = {column};
-        std::size_t width = column.size();
-        for (const Json& row : rows) {
-            cells.push_back(cellText(row, column));
-            width = std::max(width, cells.back().size());
-        }
-        const bool leading = lines[0].empty(); // the name: to the left; numbers: to the right
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            const std::string space(width - cells[i].size(), ' ');
-            lines[i] += leading ? cells[i] + space : "  " + space + cells[i];
-        }
-    }
-    for (const std::string& line : lines)
-        std::printf("%s\n", line.c_str());
+    const std::time_t now = std::time(nullptr);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", std::gmtime(&now));
+    return text;
 }
 
 } // namespace
@@ -125,12 +114,35 @@ Timing timeGraph(RenderGraph& graph, std::uint32_t runs)
     return timingOf(std::move(milliseconds));
 }
 
+std::string rowsText(const Json& rows)
+{
+    std::vector<std::string> lines(rows.size() + 1);
+    for (const std::string& column : columnsOf(rows)) {
+        std::vector<std::string> cells = {column};
+        std::size_t width = column.size();
+        for (const Json& row : rows) {
+            cells.push_back(cellText(row, column));
+            width = std::max(width, cells.back().size());
+        }
+        const bool leading = lines[0].empty(); // the name: to the left; numbers: to the right
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const std::string space(width - cells[i].size(), ' ');
+            lines[i] += leading ? cells[i] + space : "  " + space + cells[i];
+        }
+    }
+    std::string text;
+    for (const std::string& line : lines)
+        text += line + "\n";
+    return text;
+}
+
 BenchReport::BenchReport(const std::string& command, const BenchOptions& options,
                          const Context& context)
     : options_(options), about_(describeRun(command, &context))
 {
     requireOutput(options.json, {".json"});
     requireOutput(options.csv, {".csv"});
+    about_["date"] = utcNow();
     about_["settings"] = {{"quick", options.quick}, {"filter", options.filter}};
 }
 
@@ -143,7 +155,12 @@ void BenchReport::finish() const
 {
     if (rows_.empty())
         throw Error("--filter: no row's name holds '" + options_.filter + "'");
-    print(rows_);
+    std::fputs(rowsText(rows_).c_str(), stdout);
+    write();
+}
+
+void BenchReport::write() const
+{
     Json json = about_;
     json["rows"] = rows_;
     writeJson(options_.json, json);

@@ -1,74 +1,12 @@
 #include "samples/strandlight/report_page.hpp"
 
 #include <algorithm>
-#include <span>
 
-#include "engine/base/image_io.hpp"
+#include "samples/strandlight/html.hpp"
 
 namespace strandlight::cli {
 
 namespace {
-
-std::string escape(const std::string& text)
-{
-    std::string safe;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            safe += "&amp;";
-            break;
-        case '<':
-            safe += "&lt;";
-            break;
-        case '>':
-            safe += "&gt;";
-            break;
-        case '"':
-            safe += "&quot;";
-            break;
-        default:
-            safe += c;
-        }
-    }
-    return safe;
-}
-
-// RFC 4648.
-std::string base64(std::span<const std::uint8_t> bytes)
-{
-    static const char* const kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            word = word << 8 | (k < count ? bytes[i + k] : 0u);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += k <= count ? kDigits[word >> (18 - 6 * k) & 63u] : '=';
-    }
-    return text;
-}
-
-std::string picture(const CpuImage& image, const std::string& description,
-                    const std::string& classes = "")
-{
-    return "<img" + (classes.empty() ? "" : " class=\"" + classes + "\"") + " width=\"" +
-           std::to_string(image.width) + "\" height=\"" + std::to_string(image.height) +
-           "\" alt=\"" + escape(description) + "\" src=\"data:image/png;base64," +
-           base64(encodePng(image)) + "\">";
-}
-
-// The colours of the heat map from error 0 to 1.
-CpuImage heatScale()
-{
-    CpuImage ramp(256, 8);
-    for (std::uint32_t y = 0; y < ramp.height; ++y)
-        for (std::uint32_t x = 0; x < ramp.width; ++x)
-            ramp.at(x, y) = glm::vec4(float(x) / 255.0f);
-    return heatmap(ramp);
-}
 
 std::string fact(const std::string& name, const std::string& value, const std::string& unit = "")
 {
@@ -78,28 +16,23 @@ std::string fact(const std::string& name, const std::string& value, const std::s
 
 std::string row(const std::string& name, const std::string& value)
 {
-    return "<tr><th scope=\"row\">" + escape(name) + "</th><td class=\"n\">" + value +
+    return "<tr><th scope=\"row\">" + escapeHtml(name) + "</th><td class=\"n\">" + value +
            "</td></tr>\n";
-}
-
-std::string table(const std::string& caption, const std::string& rows)
-{
-    return "<table><caption>" + escape(caption) + "</caption>\n" + rows + "</table>\n";
 }
 
 std::string header(const ReportPage& page)
 {
     std::string made = "Strandlight " + std::string(version());
     if (*commit())
-        made += ", commit <code>" + escape(commit()) + "</code>";
+        made += ", commit <code>" + escapeHtml(commit()) + "</code>";
     for (const Json* run : {&page.render, &page.bake, &page.truth})
         if (run->contains("device")) {
             const Json& device = (*run)["device"];
-            made += "<br>" + escape(device.value("name", "")) + ", driver " +
-                    escape(device.value("driver", ""));
+            made += "<br>" + escapeHtml(device.value("name", "")) + ", driver " +
+                    escapeHtml(device.value("driver", ""));
             break;
         }
-    return "<header><h1>" + escape(page.title) + "</h1>\n<p class=\"soft\">" + made +
+    return "<header><h1>" + escapeHtml(page.title) + "</h1>\n<p class=\"soft\">" + made +
            "</p></header>\n";
 }
 
@@ -120,20 +53,8 @@ std::string pictures(const ReportPage& page)
 {
     const CpuImage ours = displayImage(page.picture, page.exposure);
     const CpuImage truth = displayImage(page.reference, page.exposure);
-    return "<section aria-label=\"Pictures\">\n<div class=\"swipe\">" +
-           picture(truth, "path traced") + picture(ours, "rendered from the bake", "over") +
-           "<div class=\"rule\"></div><span class=\"left\">from the bake</span>"
-           "<span class=\"right\">path traced</span>"
-           "<input type=\"range\" min=\"0\" max=\"100\" step=\"0.1\" value=\"50\" "
-           "aria-label=\"Share of the picture that comes from the bake\"></div>\n"
-           "<div class=\"triptych\">\n<figure>" +
-           picture(ours, "rendered from the bake") +
-           "<figcaption>Rendered from the bake</figcaption></figure>\n<figure>" +
-           picture(truth, "path traced") +
-           "<figcaption>Path traced, the truth</figcaption></figure>\n<figure>" +
-           picture(heatmap(page.flip), "heat map of the FLIP error") +
-           "<figcaption>FLIP error <span class=\"scale\">0 " + picture(heatScale(), "") +
-           " 1</span></figcaption></figure>\n</div>\n</section>\n";
+    return "<section aria-label=\"Pictures\">\n" + htmlSwipe(ours, truth) +
+           htmlTriptych(ours, truth, heatmap(page.flip)) + "</section>\n";
 }
 
 std::string metrics(const ImageComparison& c)
@@ -153,7 +74,7 @@ std::string metrics(const ImageComparison& c)
     for (int i = 0; i < 3; ++i)
         rows += row(std::string("mean ") + kChannels[i],
                     fixed(c.mean[i], 4) + percent(c.mean[i], c.referenceMean[i]));
-    return table("Against the truth", rows);
+    return htmlTable("Against the truth", rows);
 }
 
 std::string bakeTable(const Json& bake)
@@ -163,7 +84,7 @@ std::string bakeTable(const Json& bake)
     const Json& r = bake["result"];
     const auto whole = [&](const char* key) { return std::to_string(r.value(key, 0ull)); };
     const auto seconds = [&](const char* key) { return fixed(r.value(key, 0.0), 1) + " s"; };
-    return table(
+    return htmlTable(
         "The bake",
         row("texels with surface", whole("texels")) +
             row("of them inside geometry", whole("skipped_texels")) +
@@ -175,29 +96,11 @@ std::string bakeTable(const Json& bake)
             row("device memory, peak", bytesText(r.value("peak_device_bytes", 0ull))));
 }
 
-std::string passTable(const Json& render)
+std::string framePasses(const Json& render)
 {
-    if (!render.contains("result"))
-        return "";
-    const Json& result = render["result"];
-    double slowest = 1e-6;
-    for (const Json& pass : result["passes"])
-        slowest = std::max(slowest, pass.value("milliseconds", 0.0));
-    std::string rows;
-    for (const Json& pass : result["passes"]) {
-        const double ms = pass.value("milliseconds", 0.0);
-        rows += "<tr><th scope=\"row\">" + escape(pass.value("name", "")) +
-                "</th><td class=\"n\">" + fixed(ms, 2) +
-                " ms</td><td class=\"bar\"><i style=\"width:" + fixed(100.0 * ms / slowest, 1) +
-                "%\"></i></td></tr>\n";
-    }
-    std::string text = table("Passes of the frame", rows);
-    std::string skipped;
-    for (const Json& pass : result["skipped"])
-        skipped += (skipped.empty() ? "" : "; ") + escape(pass.get<std::string>());
-    if (!skipped.empty())
-        text += "<p class=\"soft note\">Not run: " + skipped + ".</p>\n";
-    return text;
+    return render.contains("result") ? passTable("Passes of the frame", render["result"]["passes"],
+                                                 render["result"]["skipped"])
+                                     : "";
 }
 
 std::string settingText(const Json& value)
@@ -225,22 +128,43 @@ std::string settings(const char* caption, const Json& run)
     for (const auto& [key, value] : run["settings"].items()) {
         std::string name = key;
         std::replace(name.begin(), name.end(), '_', ' ');
-        rows += "<tr><th scope=\"row\">" + escape(name) + "</th><td><code>" +
-                escape(settingText(value)) + "</code></td></tr>\n";
+        rows += "<tr><th scope=\"row\">" + escapeHtml(name) + "</th><td><code>" +
+                escapeHtml(settingText(value)) + "</code></td></tr>\n";
     }
-    return "<div>" + table(caption, rows) + "</div>\n";
+    return "<div>" + htmlTable(caption, rows) + "</div>\n";
 }
 
 } // namespace
+
+std::string passTable(const std::string& title, const Json& passes, const Json& skipped)
+{
+    double slowest = 1e-6;
+    for (const Json& pass : passes)
+        slowest = std::max(slowest, pass.value("milliseconds", 0.0));
+    std::string rows;
+    for (const Json& pass : passes) {
+        const double ms = pass.value("milliseconds", 0.0);
+        rows += "<tr><th scope=\"row\">" + escapeHtml(pass.value("name", "")) +
+                "</th><td class=\"n\">" + fixed(ms, 2) +
+                " ms</td><td class=\"bar\"><i style=\"width:" + fixed(100.0 * ms / slowest, 1) +
+                "%\"></i></td></tr>\n";
+    }
+    std::string notRun;
+    for (const Json& pass : skipped)
+        notRun += (notRun.empty() ? "" : "; ") + escapeHtml(pass.get<std::string>());
+    if (!notRun.empty())
+        notRun = "<p class=\"soft note\">Not run: " + notRun + ".</p>\n";
+    return htmlTable(title, rows) + notRun;
+}
 
 std::string reportHtml(const ReportPage& page)
 {
     return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-           escape(page.title) + " - Strandlight</title>\n<style>" + kReportStyle +
+           escapeHtml(page.title) + " - Strandlight</title>\n<style>" + kReportStyle +
            "</style>\n</head>\n<body>\n<main>\n" + header(page) + facts(page) + pictures(page) +
            "<div class=\"columns\">\n<div>" + metrics(page.comparison) + "</div>\n<div>" +
-           passTable(page.render) + "</div>\n<div>" + bakeTable(page.bake) + "</div>\n" +
+           framePasses(page.render) + "</div>\n<div>" + bakeTable(page.bake) + "</div>\n" +
            settings("Settings of the bake", page.bake) +
            settings("Settings of the frame", page.render) +
            settings("Settings of the truth", page.truth) + "</div>\n</main>\n<script>" +

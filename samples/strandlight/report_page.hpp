@@ -26,6 +26,9 @@ struct ReportPage
 
 std::string reportHtml(const ReportPage& page);
 
+// Passes [{name, milliseconds}] with bars, and what was not run and why.
+std::string passTable(const std::string& title, const Json& passes, const Json& skipped);
+
 // report_style.cpp
 extern const char* const kReportStyle;
 extern const char* const kReportScript;

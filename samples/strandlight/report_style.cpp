@@ -41,7 +41,7 @@ img { display: block; width: 100%; height: auto; }
 .swipe .left { left: .6rem; } .swipe .right { right: .6rem; }
 .swipe input { position: absolute; inset: 0; width: 100%; height: 100%; margin: 0; opacity: 0; cursor: ew-resize; touch-action: pan-y; }
 .swipe:focus-within { outline: 2px solid var(--accent); outline-offset: 2px; }
-.triptych { display: grid; grid-template-columns: repeat(3, 1fr); gap: 1rem; margin: 1.5rem 0 2.5rem; }
+.triptych { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 1rem; margin: 1.5rem 0 2.5rem; }
 .scale { display: flex; align-items: center; gap: .5rem; font-variant-numeric: tabular-nums; }
 .scale img { height: .6rem; width: auto; flex: 1; min-width: 0; }
 .columns { display: grid; grid-template-columns: repeat(2, minmax(0, 1fr)); gap: 2.5rem 3rem; }
