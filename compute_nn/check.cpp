@@ -74,13 +74,8 @@ const NamedTensor& VectorFile::tensor(const std::string& name,
     const NamedTensor& found = tensor(name);
     if (found.shape == shape)
         return found;
-    const auto text = [](const std::vector<std::uint64_t>& sides) {
-        std::string all;
-        for (std::uint64_t side : sides)
-            all += (all.empty() ? "" : ",") + std::to_string(side);
-        return "[" + all + "]";
-    };
-    refuse("tensor \"" + name + "\"", "has shape " + text(found.shape) + ", wanted " + text(shape));
+    refuse("tensor \"" + name + "\"",
+           "has shape " + shapeText(found.shape) + ", wanted " + shapeText(shape));
 }
 
 TensorDesc VectorFile::desc(const std::string& name) const

@@ -70,7 +70,9 @@ void Parameters::load(const Safetensors& file, const std::string& path)
             if (found == file.tensors.end())
                 throw FileError(path, place, "is missing");
             if (found->second.shape != slice.shape)
-                throw FileError(path, place, "has another shape than the network");
+                throw FileError(path, place,
+                                "has shape " + shapeText(found->second.shape) +
+                                    ", the network needs " + shapeText(slice.shape));
             for (float value : found->second.values)
                 if (!std::isfinite(value))
                     throw FileError(path, place, "holds a value that is not finite");

@@ -108,19 +108,33 @@ NamedTensor parseTensor(const Json& entry, std::span<const std::uint8_t> data,
 
 } // namespace
 
+std::string shapeText(const std::vector<std::uint64_t>& shape)
+{
+    std::string text;
+    for (const std::uint64_t side : shape)
+        text += (text.empty() ? "" : ",") + std::to_string(side);
+    return "[" + text + "]";
+}
+
 Safetensors Safetensors::load(const std::filesystem::path& path)
 {
-    const std::string name = path.string();
     const std::vector<std::uint8_t> bytes = readFile(path);
+    return parse(std::as_bytes(std::span(bytes)), path.string());
+}
+
+Safetensors Safetensors::parse(std::span<const std::byte> file, const std::string& name)
+{
+    const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(file.data()),
+                                              file.size());
     const Json header = parseHeader(bytes, name);
     std::uint64_t length = 0;
     std::memcpy(&length, bytes.data(), 8);
-    const auto data = std::span(bytes).subspan(8 + length);
+    const auto data = bytes.subspan(8 + length);
 
-    Safetensors file;
+    Safetensors result;
     for (const auto& [key, entry] : header.items()) {
         if (key != "__metadata__") {
-            file.tensors[key] = parseTensor(entry, data, name, "tensor \"" + key + "\"");
+            result.tensors[key] = parseTensor(entry, data, name, "tensor \"" + key + "\"");
             continue;
         }
         if (!entry.is_object())
@@ -128,10 +142,10 @@ Safetensors Safetensors::load(const std::filesystem::path& path)
         for (const auto& [field, value] : entry.items()) {
             if (!value.is_string())
                 throw FileError(name, "__metadata__ \"" + field + "\"", "is not text");
-            file.metadata[field] = value.get<std::string>();
+            result.metadata[field] = value.get<std::string>();
         }
     }
-    return file;
+    return result;
 }
 
 void Safetensors::save(const std::filesystem::path& path) const

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 96 &&
               sizeof(gpu::HairShadePush) == 52 && sizeof(gpu::HairLight) == 120 &&
-              sizeof(gpu::HairInputPush) == 32);
+              sizeof(gpu::HairInputPush) == 36);
 
 gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view)
 {
@@ -144,25 +144,32 @@ BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
     return shaded;
 }
 
+HairSampleIds addHairOccludersPass(RenderGraph& graph, HairBuffers& buffers, const HairView& view,
+                                   const HairRenderSettings& settings, std::uint32_t lightCount,
+                                   bool plainSurfaces)
+{
+    const ImageDesc desc{view.width, view.height, 1, Format::RGBA16F, 4};
+    HairSampleIds ids;
+    PassBuilder pass = graph.addRasterPass("hair occluders");
+    const glm::vec3 clear = plainSurfaces ? settings.backgroundColor : glm::vec3(0.0f);
+    if (plainSurfaces)
+        ids.color = pass.color(graph.createImage("hair color", desc), {true, {clear, 0.0f}});
+    ids.depth = pass.depth(graph.createImage("hair depth", desc.with(Format::Depth32F)));
+    gpu::HairOpaquePush push = opaquePush(view);
+    push.ambient = settings.ambient;
+    push.lightCount = lightCount;
+    drawOpaque(graph, pass, buffers, push,
+               plainSurfaces ? kernels::hair_opaque_frag : kernels::hair_depth_frag, Blend::None);
+    return ids;
+}
+
 HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
                                  const HairView& view, const HairRenderSettings& settings,
                                  std::uint32_t lightCount, bool plainSurfaces, bool wantFeatures)
 {
     const ImageDesc desc{view.width, view.height, 1, Format::RGBA16F, 4};
-    HairSampleIds ids;
-    {
-        PassBuilder pass = graph.addRasterPass("hair occluders");
-        const glm::vec3 clear = plainSurfaces ? settings.backgroundColor : glm::vec3(0.0f);
-        if (plainSurfaces)
-            ids.color = pass.color(graph.createImage("hair color", desc), {true, {clear, 0.0f}});
-        ids.depth = pass.depth(graph.createImage("hair depth", desc.with(Format::Depth32F)));
-        gpu::HairOpaquePush push = opaquePush(view);
-        push.ambient = settings.ambient;
-        push.lightCount = lightCount;
-        drawOpaque(graph, pass, buffers, push,
-                   plainSurfaces ? kernels::hair_opaque_frag : kernels::hair_depth_frag,
-                   Blend::None);
-    }
+    HairSampleIds ids =
+        addHairOccludersPass(graph, buffers, view, settings, lightCount, plainSurfaces);
     PassBuilder pass = graph.addRasterPass("hair strands");
     ids.color = plainSurfaces ? pass.color(ids.color, {false, {}})
                               : pass.color(graph.createImage("hair color", desc));
@@ -173,14 +180,29 @@ HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, Buffe
     ids.depth = pass.depth(ids.depth, {false, glm::vec4(1.0f)});
     const StrandIds strands = readStrands(graph, pass, buffers);
     pass.read(shaded);
-    const KernelBlob& plain =
-        settings.alphaToCoverage ? kernels::hair_alpha_frag : kernels::hair_color_frag;
+    const bool deviceMasks = settings.filter == HairFilter::AlphaToCoverage;
+    const KernelBlob& plain = deviceMasks ? kernels::hair_alpha_frag : kernels::hair_color_frag;
     const RasterDesc raster{.vertex = &kernels::hair_strands_vert,
                             .fragment = wantFeatures ? &kernels::hair_features_frag : &plain,
-                            .alphaToCoverage = settings.alphaToCoverage && !wantFeatures};
+                            .alphaToCoverage = deviceMasks && !wantFeatures};
     pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
               {strands.points, strands.tangents, strands.segments, shaded});
     return ids;
+}
+
+ImageId addHairBackdropPass(RenderGraph& graph, HairBuffers& buffers, const HairView& view,
+                            const HairRenderSettings& settings, std::uint32_t lightCount,
+                            ImageId radiance)
+{
+    const HairSampleIds ids =
+        addHairOccludersPass(graph, buffers, view, settings, lightCount, true);
+    PassBuilder pass = graph.addComputePass("hair backdrop");
+    pass.sample(ids.color);
+    radiance = pass.write(radiance);
+    pass.dispatch(kernels::hair_backdrop, {view.width, view.height, 1},
+                  gpu::HairResolvePush{view.width, view.height, 1.0f, 4},
+                  {Binding(ids.color, Filter::Nearest), radiance});
+    return radiance;
 }
 
 ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const HairView& view)
@@ -207,14 +229,15 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
 }
 
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
-                            float weight)
+                            float weight, std::uint32_t count)
 {
     PassBuilder pass = graph.addComputePass("hair resolve");
     pass.sample(samples.color);
     sums.hair = pass.write(sums.hair);
     sums.behind = pass.write(sums.behind);
     const glm::uvec3 extent = graph.extent(samples.color);
-    pass.dispatch(kernels::hair_resolve, extent, gpu::HairResolvePush{extent.x, extent.y, weight},
+    pass.dispatch(kernels::hair_resolve, extent,
+                  gpu::HairResolvePush{extent.x, extent.y, weight, count},
                   {Binding(samples.color, Filter::Nearest), sums.hair, sums.behind});
     return sums;
 }
@@ -226,22 +249,24 @@ TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height)
 }
 
 TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          const HairDepthScale& depth, const TensorId& x)
+                          const HairDepthScale& depth, const TensorId& x, std::uint32_t firstRow)
 {
     if (!samples.features.valid() || !samples.shape.valid())
         throw Error("hair: the network's input needs strands drawn with features");
     const glm::uvec3 extent = graph.extent(samples.features);
     const TensorDesc wanted = hairInputDesc(extent.x, extent.y);
-    if (x.desc != wanted)
-        throw Error("hair: the network's input " + shapeText(x.desc) + " is not " +
+    if (x.desc.n != 1 || x.desc.c != wanted.c || x.desc.w != wanted.w ||
+        firstRow + x.desc.h > wanted.h)
+        throw Error("hair: the network's input " + shapeText(x.desc) + " holds no rows of " +
                     shapeText(wanted));
     PassBuilder pass = graph.addComputePass("hair network input");
     pass.sample(samples.features);
     pass.sample(samples.shape);
     pass.sample(exact);
     const BufferId planes = pass.write(x.buffer);
-    const gpu::HairInputPush push{x.view(), extent.x, extent.y, depth.offset, depth.scale};
-    pass.dispatch(kernels::hair_input, {wanted.w, wanted.h, 1}, push,
+    const gpu::HairInputPush push{x.view(), firstRow,     extent.x,
+                                  extent.y, depth.offset, depth.scale};
+    pass.dispatch(kernels::hair_input, {x.desc.w, x.desc.h, 1}, push,
                   {Binding(samples.features, Filter::Nearest),
                    Binding(samples.shape, Filter::Nearest), Binding(exact, Filter::Nearest),
                    planes});

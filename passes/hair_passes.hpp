@@ -45,6 +45,16 @@ BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
                               const std::vector<bool>& shadowed, const HairView& view,
                               const HairRenderSettings& settings);
 
+// Opaque triangles, shaded into `color` or, without `plainSurfaces`, depth alone.
+HairSampleIds addHairOccludersPass(RenderGraph& graph, HairBuffers& buffers, const HairView& view,
+                                   const HairRenderSettings& settings, std::uint32_t lightCount,
+                                   bool plainSurfaces);
+
+// The picture without hair into `radiance`, RGBA32F: shaded triangles before the constant colour.
+ImageId addHairBackdropPass(RenderGraph& graph, HairBuffers& buffers, const HairView& view,
+                            const HairRenderSettings& settings, std::uint32_t lightCount,
+                            ImageId radiance);
+
 // Opaque triangles, then strands. With `plainSurfaces` the triangles are shaded, else they only
 // hide. Features and shape stay invalid ids unless `wantFeatures`.
 HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
@@ -54,17 +64,18 @@ HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, Buffe
 // R32F [height, width]: the product of 1 - alpha over all strands that nothing opaque hides.
 ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const HairView& view);
 
-// Adds weight times the mean of the four samples to the sums.
+// Adds weight times the mean of the first `count` of the four samples to the sums.
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
-                            float weight);
+                            float weight, std::uint32_t count = 4);
 
 // [1,25,H,W] of the network's input: the picture's sides, rounded up to multiples of 8.
 TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height);
 
-// Writes what a network reads into x, planes as kHairInputPlanes says; x is of hairInputDesc and
-// may be a channel range (createUNetInput). Throws Error when x is not, or when the samples came
-// without features.
+// Writes what a network reads into x, planes as kHairInputPlanes says; x is of hairInputDesc, or
+// holds the rows of it from `firstRow` on, and may be a channel range (createUNetInput). Throws
+// Error when x is none of these, or when the samples came without features.
 TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          const HairDepthScale& depth, const TensorId& x);
+                          const HairDepthScale& depth, const TensorId& x,
+                          std::uint32_t firstRow = 0);
 
 } // namespace strandlight

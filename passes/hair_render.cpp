@@ -5,6 +5,8 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "passes/hair_filter.hpp"
+#include "passes/hair_network.hpp"
 #include "passes/hair_passes.hpp"
 
 namespace strandlight {
@@ -29,6 +31,10 @@ void checkSettings(const HairRenderSettings& s)
                     " texels a side, it must be 16 to 8192");
     if (!(glm::length(s.keyDirection) > 0.0f))
         throw Error("hair: the key light needs a direction");
+    if (s.filter == HairFilter::UNet && s.network == nullptr)
+        throw Error("hair: the filter is a network, but no network is given");
+    if (s.filter == HairFilter::UNet && (s.frames > 1 || s.mode == HairMode::Reference))
+        throw Error("hair: the network filters the four samples of one frame, not more");
     if (s.background && (s.background->width != s.width || s.background->height != s.height))
         throw Error("hair: the background is " + std::to_string(s.background->width) + "x" +
                     std::to_string(s.background->height) + ", the picture " +
@@ -72,7 +78,7 @@ void composite(HairFrame& frame, const CpuImage& behind, const HairRenderSetting
         glm::vec4& hair = frame.hair.pixels[i];
         const glm::vec4& open = behind.pixels[i];
         const float noisy = hair.w;
-        if (settings.alphaCorrection && noisy < 1.0f) {
+        if (settings.filter == HairFilter::Coverage && noisy < 1.0f) {
             hair *= (1.0f - frame.exactTransmittance.pixels[i].x) / (1.0f - noisy);
             hair.w = frame.exactTransmittance.pixels[i].x;
         }
@@ -108,6 +114,7 @@ public:
         view_.width = settings.width;
         view_.height = settings.height;
         view_.alpha = settings.alpha;
+        depth_ = hairDepthScale(hair, camera);
         planShadows(hair);
     }
 
@@ -116,8 +123,10 @@ public:
         RenderGraph graph(context_);
         graph.setTimings(true);
         addHairShadingPasses(graph, buffers_, lights_, shadowed_, view_, settings_);
-        if (!settings_.exactCoverage && !settings_.alphaCorrection) {
-            out_.skipped.push_back("hair exact coverage: not asked for");
+        const bool wanted = settings_.exactCoverage || settings_.filter == HairFilter::Coverage;
+        if (!wanted || settings_.filter == HairFilter::UNet) {
+            if (settings_.filter != HairFilter::UNet) // that has the pass in its own graph
+                out_.skipped.push_back("hair exact coverage: not asked for");
             graph.run();
         } else {
             const ImageId exact = addHairCoveragePass(graph, buffers_, view_);
@@ -144,12 +153,52 @@ public:
                 graph, buffers_, graph.importBuffer(buffers_.shaded), view, settings_,
                 std::uint32_t(lights_.size()), settings_.background == nullptr, false);
             addHairResolvePass(graph, samples, {graph.importImage(hair), graph.importImage(behind)},
-                               1.0f / float(settings_.frames));
+                               1.0f / float(settings_.frames),
+                               settings_.filter == HairFilter::None ? 1u : 4u);
             graph.run();
             addTimings(out_.timings, graph.timings());
         }
         out_.hair = hair.download();
         composite(out_, behind.download(), settings_);
+    }
+
+    // One frame through the network.
+    void filterFrame()
+    {
+        const ImageDesc desc{settings_.width, settings_.height, 1, Format::RGBA32F, 1};
+        Image hair(context_, desc, "hair mean");
+        Image behind(context_, desc, "behind mean");
+        Image filtered(context_, desc, "filtered hair");
+        Image radiance(context_, desc, "hair over background");
+        const auto lights = std::uint32_t(lights_.size());
+        HairView view = view_;
+        view.frame = settings_.frameIndex;
+        RenderGraph graph(context_);
+        graph.setTimings(true);
+        HairFilterInput input;
+        input.samples = addHairStrandsPass(graph, buffers_, graph.importBuffer(buffers_.shaded),
+                                           view, settings_, lights, false, true);
+        input.exact = addHairCoveragePass(graph, buffers_, view);
+        input.mean = addHairResolvePass(graph, input.samples,
+                                        {graph.importImage(hair), graph.importImage(behind)}, 1.0f)
+                         .hair;
+        input.depth = depth_;
+        HairComposite over{graph.importImage(filtered), graph.importImage(radiance)};
+        if (settings_.background)
+            radiance.upload(*settings_.background);
+        else
+            over.radiance =
+                addHairBackdropPass(graph, buffers_, view, settings_, lights, over.radiance);
+        const ParameterIds weights(graph, settings_.network->parameters);
+        addHairFilterPasses(graph, settings_.network->net, weights, input, over);
+        graph.output(input.exact);
+        graph.run();
+        addTimings(out_.timings, graph.timings());
+        out_.exactTransmittance = graph.read(input.exact);
+        out_.radiance = radiance.download();
+        out_.hair = filtered.download();
+        for (glm::vec4& pixel : out_.hair.pixels)
+            pixel.w = 1.0f - pixel.w;
     }
 
 private:
@@ -171,6 +220,7 @@ private:
     std::vector<bool> shadowed_;
     HairBuffers buffers_;
     HairView view_;
+    HairDepthScale depth_;
 };
 
 } // namespace
@@ -189,7 +239,10 @@ HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opa
     checkHair(hair);
     FrameMaker maker(context, hair, opaque, camera, settings, frame);
     maker.shade();
-    maker.averageFrames();
+    if (settings.filter == HairFilter::UNet)
+        maker.filterFrame();
+    else
+        maker.averageFrames();
     return frame;
 }
 

@@ -22,6 +22,18 @@ enum class HairMode : std::uint32_t
     Reference   // ribbons of true width; the samples of all frames resolve them
 };
 
+// What becomes of the four samples of a pixel.
+enum class HairFilter : std::uint32_t
+{
+    None,            // the first one alone
+    Average,         // their mean
+    Coverage,        // their mean, scaled to the exact coverage (Enderton 2010, 3.3)
+    AlphaToCoverage, // the mean of the device's own masks, which depend on alpha alone
+    UNet             // a network's answer (hair_filter.hpp); of one frame only
+};
+
+struct HairNetwork;
+
 struct HairRenderSettings
 {
     std::uint32_t width = 640;
@@ -33,9 +45,9 @@ struct HairRenderSettings
     std::uint32_t lod = 0;        // draw every lod-th strand lod times wider; 0: by projected width
     bool shadows = true;          // lights' shadow maps of hair and opaque geometry
     std::uint32_t shadowSize = 1024; // texels a side, four samples each
-    bool alphaCorrection = false;    // scale the noisy hair to its exact coverage (Enderton, 3.3)
-    bool alphaToCoverage = false;    // the device's own masks, which depend on alpha alone
-    bool exactCoverage = false;      // fill HairFrame::exactTransmittance
+    HairFilter filter = HairFilter::Average;
+    HairNetwork* network = nullptr; // of HairFilter::UNet; outlives renderHair
+    bool exactCoverage = false;     // fill HairFrame::exactTransmittance
 
     float roughness = 0.3f;               // longitudinal, in [0.05, 1] (Chiang 2016)
     float tiltDegrees = 2.0f;             // of the cuticle scales

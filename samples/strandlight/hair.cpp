@@ -1,4 +1,5 @@
 // strandlight hair: pictures of hair files and built-in grooms.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
+#include "passes/hair_network.hpp"
 #include "passes/hair_render.hpp"
 #include "samples/strandlight/commands.hpp"
 #include "samples/strandlight/hair_options.hpp"
@@ -27,6 +29,7 @@ struct Options
     HairRenderSettings settings;
     std::uint32_t samples = kSamplesPerFrame;
     std::string filter = "average";
+    std::string weights;
     std::string lod = "auto";
     bool stats = false;
     std::string json;
@@ -40,6 +43,45 @@ std::uint32_t parseLod(const std::string& text)
         if (text == std::to_string(k))
             return k;
     throw Error("--lod: '" + text + "' is neither auto nor 1 .. " + std::to_string(kMostLod));
+}
+
+struct NamedFilter
+{
+    const char* name;
+    HairFilter filter;
+};
+constexpr NamedFilter kFilters[] = {{"none", HairFilter::None},
+                                    {"average", HairFilter::Average},
+                                    {"coverage", HairFilter::Coverage},
+                                    {"a2c", HairFilter::AlphaToCoverage},
+                                    {"unet", HairFilter::UNet}};
+
+std::vector<std::string> filterNames()
+{
+    std::vector<std::string> names;
+    for (const NamedFilter& named : kFilters)
+        names.push_back(named.name);
+    return names;
+}
+
+HairFilter filterOf(const Options& o)
+{
+    const auto chosen =
+        std::find_if(std::begin(kFilters), std::end(kFilters),
+                     [&](const NamedFilter& named) { return o.filter == named.name; });
+    if (chosen->filter == HairFilter::UNet && o.samples != kSamplesPerFrame)
+        throw Error("--samples: the network of --filter unet reads four samples, not " +
+                    std::to_string(o.samples));
+    if (chosen->filter != HairFilter::UNet && !o.weights.empty())
+        throw Error("--weights: only --filter unet has any");
+    return chosen->filter;
+}
+
+std::optional<HairNetwork> openNetwork(Context& context, const Options& o)
+{
+    if (o.settings.filter != HairFilter::UNet)
+        return std::nullopt;
+    return o.weights.empty() ? builtinHairNetwork(context) : loadHairNetwork(context, o.weights);
 }
 
 std::uint32_t framesOf(std::uint32_t samples, const char* option)
@@ -90,6 +132,7 @@ Json describe(const std::string& command, const Options& o, const Context& conte
                         {"camera", describeCamera(camera)},
                         {"samples", o.settings.frames * kSamplesPerFrame},
                         {"filter", o.filter},
+                        {"weights", o.weights},
                         {"frame", o.settings.frameIndex},
                         {"shadows", o.settings.shadows},
                         {"exposure", o.view.exposure}};
@@ -135,6 +178,8 @@ int run(const std::string& command, Options& o)
     const Camera camera =
         o.view.camera.empty() ? hairCamera(hair) : chooseCamera(Scene{}, o.view.camera);
     Context context = openDevice(o.device);
+    std::optional<HairNetwork> network = openNetwork(context, o);
+    o.settings.network = network ? &*network : nullptr;
 
     const HairFrame frame =
         renderHair(context, hair, opaque ? &*opaque : nullptr, camera, o.settings);
@@ -170,10 +215,13 @@ Command addHairRender(CLI::App& parent)
     addNumber(*app, "--samples", o->samples, "Per pixel, a multiple of 4", 4u, kMostSamples);
     app->add_option("--filter", o->filter,
                     "average: of the samples; coverage: scaled to the exact coverage as well; "
-                    "a2c: the device's alpha to coverage instead of random masks")
+                    "a2c: the device's alpha to coverage instead of random masks; none: one sample "
+                    "alone; unet: a trained network")
         ->type_name("FILTER")
         ->capture_default_str()
-        ->check(CLI::IsMember({"average", "coverage", "a2c"}));
+        ->check(CLI::IsMember(filterNames()));
+    app->add_option("--weights", o->weights, "Of the network; default: those built in")
+        ->type_name("F.safetensors");
     addNumber(*app, "--frame", o->settings.frameIndex, "Another frame has other noise", 0u,
               1u << 24);
     app->add_option("--lod", o->lod,
@@ -184,8 +232,7 @@ Command addHairRender(CLI::App& parent)
                       "  strandlight hair render mohawk.tfx -o mohawk.png --samples 16 --lod 2");
     return {app, [o] {
                 o->settings.frames = framesOf(o->samples, "--samples");
-                o->settings.alphaCorrection = o->filter == "coverage";
-                o->settings.alphaToCoverage = o->filter == "a2c";
+                o->settings.filter = filterOf(*o);
                 o->settings.lod = parseLod(o->lod);
                 return run("hair render", *o);
             }};

@@ -21,8 +21,9 @@ void main()
     }
     uint plane = push.planes.width * push.planes.height;
     uint at = push.planes.offset + uint(pixel.y) * push.planes.width + uint(pixel.x);
-    bool inside = pixel.x < int(push.width) && pixel.y < int(push.height);
-    ivec2 from = inside ? pixel : ivec2(0);
+    ivec2 from = ivec2(pixel.x, pixel.y + int(push.firstRow));
+    bool inside = from.x < int(push.width) && from.y < int(push.height);
+    from = inside ? from : ivec2(0);
     for (int s = 0; s < 4; ++s) {
         vec4 value = inside ? texelFetch(features, from, s) : vec4(0.0, 0.0, 1.0, 0.0);
         // The tangent's sign says where the root is, which must not matter: the double angle. (0,0) without hair.

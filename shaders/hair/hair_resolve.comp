@@ -1,4 +1,4 @@
-// Plain average of four samples, added to a sum over frames: hair with its transmittance, and what shows beside it.
+// Plain average of the samples, added to a sum over frames: hair with its transmittance, and what shows beside it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -18,13 +18,13 @@ void main()
     }
     vec4 covered = vec4(0.0);
     vec4 open = vec4(0.0);
-    for (int s = 0; s < 4; ++s) {
+    for (int s = 0; s < int(push.samples); ++s) {
         vec4 value = texelFetch(color, pixel, s);
         float strand = value.a > 0.0 ? 1.0 : 0.0; // alpha to coverage leaves the strand's alpha
         covered.rgb += value.rgb * strand;
         open += vec4(value.rgb, 1.0) * (1.0 - strand);
     }
-    float weight = 0.25 * push.weight;
+    float weight = push.weight / float(push.samples);
     imageStore(hair, pixel, imageLoad(hair, pixel) + weight * vec4(covered.rgb, open.w));
     imageStore(behind, pixel, imageLoad(behind, pixel) + weight * open);
 }

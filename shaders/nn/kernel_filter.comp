@@ -7,7 +7,7 @@
 
 #include "shared/nn_types.h"
 #include "nn/divide.glsl"
-#include "nn/nn_math.glsl"
+#include "nn/filter_weights.glsl"
 
 layout(local_size_x = 32) in;
 layout(constant_id = 0) const uint BACKWARD = 0; // 0: result = y. 1: result = dLogits
@@ -18,7 +18,7 @@ layout(binding = 2, r32f) uniform readonly imageBuffer dY;     // [N,4,H,W]; BAC
 layout(binding = 3, scalar) writeonly buffer Result { float result[]; };
 layout(push_constant, scalar) uniform Push { KernelFilterPush push; };
 
-const int T = int(kFilterTaps);
+const uint T = kFilterTaps;
 const int C = int(kFilterChannels);
 
 void main()
@@ -31,34 +31,25 @@ void main()
     int y = int(divide(pixel, push.image.width));
     int x = int(pixel) - y * int(push.image.width);
 
-    // Softmax over the taps inside; the largest logit is subtracted so that no exponential overflows.
     int logitAt = int(push.logits.offset + n * push.logits.imageStride + pixel);
     float weight[T];
     bool inside[T];
     int tap[T];
-    float largest = uintBitsToFloat(0xff800000u);
-    [[unroll]] for (int k = 0; k < T; ++k) {
+    [[unroll]] for (int k = 0; k < int(T); ++k) {
         int ty = y + k / 3 - 1;
         int tx = x + k % 3 - 1;
         inside[k] = uint(ty) < push.image.height && uint(tx) < push.image.width;
         tap[k] = inside[k] ? ty * int(push.image.width) + tx : 0;
         weight[k] = imageLoad(logits, logitAt + k * int(plane)).x;
-        largest = inside[k] && !(weight[k] <= largest) ? weight[k] : largest; // NaN is taken and spreads
     }
-    float sum = 0.0;
-    [[unroll]] for (int k = 0; k < T; ++k) {
-        weight[k] = inside[k] ? nnExp(weight[k] - largest) : 0.0;
-        sum += weight[k];
-    }
-    [[unroll]] for (int k = 0; k < T; ++k)
-        weight[k] /= sum;
+    filterWeights(weight, inside);
 
     int imageAt = int(push.image.offset + n * push.image.imageStride);
     uint resultAt = push.result.offset + n * push.result.imageStride + pixel;
     if (BACKWARD == 0u) {
         [[unroll]] for (int c = 0; c < C; ++c) {
             float value = 0.0;
-            [[unroll]] for (int k = 0; k < T; ++k)
+            [[unroll]] for (int k = 0; k < int(T); ++k)
                 value += weight[k] * imageLoad(image, imageAt + c * int(plane) + tap[k]).x;
             result[resultAt + uint(c) * plane] = value;
         }
@@ -69,12 +60,12 @@ void main()
         along[c] = imageLoad(dY, int(push.dY.offset + n * push.dY.imageStride + pixel) + c * int(plane)).x;
     float g[T];
     float mean = 0.0;
-    [[unroll]] for (int k = 0; k < T; ++k) {
+    [[unroll]] for (int k = 0; k < int(T); ++k) {
         g[k] = 0.0;
         [[unroll]] for (int c = 0; c < C; ++c)
             g[k] += along[c] * imageLoad(image, imageAt + c * int(plane) + tap[k]).x;
         mean += weight[k] * g[k];
     }
-    [[unroll]] for (int k = 0; k < T; ++k)
+    [[unroll]] for (int k = 0; k < int(T); ++k)
         result[resultAt + uint(k) * plane] = weight[k] * (g[k] - mean);
 }

@@ -83,6 +83,7 @@ struct HairResolvePush
     uint width;
     uint height;
     float weight; // of this frame in the sum
+    uint samples; // that are averaged, of four
 };
 
 // Planes of the network's input, [25, height, width]: value v of sample s is plane 4 v + s; the last is the exact
@@ -91,11 +92,29 @@ STRANDLIGHT_CONST(uint) kHairInputPlanes = 25u;
 
 struct HairInputPush
 {
-    TensorView planes; // the picture's size or more
+    TensorView planes; // rows of the picture, and past its border
+    uint firstRow;     // of the planes in the picture
     uint width;        // of the picture
     uint height;
     float depthOffset; // planes hold (depth - offset) * scale, 0 without hair
     float depthScale;
+};
+
+// Planes of the network's output, [12, height, width]: ln(1 + brightness), illumination, what the transmittance is above
+// the exact one, nine logits of a kernel.
+STRANDLIGHT_CONST(uint) kHairOutputs = 12u;
+STRANDLIGHT_CONST(uint) kHairOutBrightness = 0u;
+STRANDLIGHT_CONST(uint) kHairOutTransmittance = 2u;
+STRANDLIGHT_CONST(uint) kHairOutLogits = 3u;
+
+struct HairCompositePush
+{
+    TensorView y;
+    uint width;     // of the picture
+    uint height;
+    uint firstRow;  // of the picture: rows [firstRow, endRow) are done
+    uint endRow;
+    uint tensorRow; // of the picture, the tensor's first
 };
 
 STRANDLIGHT_SHARED_END

@@ -70,7 +70,7 @@ TEST_CASE("hair: alpha to coverage gives stacked layers the same samples")
 {
     constexpr std::uint32_t kSide = 32;
     HairRenderSettings settings = plainSettings(kSide);
-    settings.alphaToCoverage = true;
+    settings.filter = HairFilter::AlphaToCoverage;
     const auto transmittance = [&](float alpha, std::uint32_t count) {
         settings.alpha = alpha;
         return meanTransmittance(renderHair(test::context(), layers(count, float(kSide)), nullptr,
@@ -186,7 +186,7 @@ TEST_CASE("hair: the exact coverage corrects the noisy one")
     constexpr std::uint32_t kSide = 48;
     HairRenderSettings settings = plainSettings(kSide);
     settings.alpha = 0.3f;
-    settings.alphaCorrection = true;
+    settings.filter = HairFilter::Coverage;
     const HairFrame frame =
         renderHair(test::context(), layers(3, float(kSide)), nullptr, pixelCamera(kSide), settings);
     for (std::size_t i = 0; i < frame.hair.pixels.size(); ++i) {

@@ -1,0 +1,93 @@
+#include "passes/hair_filter.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "compute_nn/unet.hpp"
+#include "engine/base/error.hpp"
+#include "kernels.gen.hpp"
+
+namespace strandlight {
+namespace {
+
+static_assert(sizeof(gpu::HairCompositePush) == 36);
+
+// Rows above and below that an output pixel sees, at most: 2^levels for the pixel's own block and
+// as much again for the convolutions going down, at three levels and padded to 8.
+constexpr std::uint32_t kMarginRows = 16;
+
+// Rows [firstRow, endRow) of the picture by a tensor of rows [tensorRow, tensorEnd).
+struct Band
+{
+    std::uint32_t firstRow, endRow, tensorRow, tensorEnd;
+};
+
+Band bandAt(std::uint32_t firstRow, std::uint32_t rows, std::uint32_t paddedHeight)
+{
+    const std::uint32_t end = std::min(firstRow + rows, paddedHeight);
+    return {firstRow, end, firstRow - std::min(firstRow, kMarginRows),
+            std::min(end + kMarginRows, paddedHeight)};
+}
+
+std::uint32_t chooseBandRows(const RenderGraph& graph, const UNetDesc& net,
+                             const TensorDesc& picture, const HairFilterSettings& settings)
+{
+    if (settings.bandRows > 0)
+        return (settings.bandRows + 7) / 8 * 8;
+    const std::uint64_t rowBytes = std::uint64_t(picture.w) * net.channels(0) * sizeof(float);
+    const auto most = std::uint32_t(graph.context().maxStorageBufferBytes() / rowBytes / 8 * 8);
+    if (most < 3 * kMarginRows)
+        throw Error("hair filter: a picture of " + std::to_string(picture.w) +
+                    " pixels a row is too wide for the device");
+    if (most >= picture.h)
+        return picture.h;
+    const std::uint32_t bands = (picture.h + most - 2 * kMarginRows - 1) / (most - 2 * kMarginRows);
+    return (picture.h / bands + 8) / 8 * 8;
+}
+
+void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const TensorId& y,
+                      const Band& band, HairComposite& over)
+{
+    const glm::uvec3 size = graph.extent(input.exact);
+    PassBuilder pass = graph.addComputePass("hair composite");
+    const BufferId answer = pass.read(y.buffer);
+    const ImageId mean = pass.read(input.mean);
+    pass.sample(input.exact);
+    over.filtered = pass.write(over.filtered);
+    over.radiance = pass.write(over.radiance);
+    const std::uint32_t endRow = std::min(band.endRow, size.y);
+    const gpu::HairCompositePush push{y.view(),      size.x, size.y,
+                                      band.firstRow, endRow, band.tensorRow};
+    pass.dispatch(
+        kernels::hair_composite, {size.x, endRow - band.firstRow, 1}, push,
+        {answer, mean, Binding(input.exact, Filter::Nearest), over.filtered, over.radiance});
+}
+
+} // namespace
+
+HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
+                                  const ParameterIds& parameters, const HairFilterInput& input,
+                                  const HairComposite& over, const HairFilterSettings& settings)
+{
+    if (net.in != gpu::kHairInputPlanes || net.out != gpu::kHairOutputs || net.levels() > 3)
+        throw Error("hair filter: a network of " + std::to_string(net.in) + " planes to " +
+                    std::to_string(net.out) + " with " + std::to_string(net.levels()) +
+                    " levels, it must be " + std::to_string(gpu::kHairInputPlanes) + " to " +
+                    std::to_string(gpu::kHairOutputs) + " with at most 3");
+    const glm::uvec3 size = graph.extent(input.exact);
+    const TensorDesc picture = hairInputDesc(size.x, size.y);
+    const std::uint32_t rows = chooseBandRows(graph, net, picture, settings);
+    HairComposite result = over;
+    for (std::uint32_t first = 0; first < picture.h; first += rows) {
+        const Band band = bandAt(first, rows, picture.h);
+        TensorDesc desc = picture;
+        desc.h = band.tensorEnd - band.tensorRow;
+        const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.depth,
+                                            createUNetInput(graph, net, desc), band.tensorRow);
+        const UNetValues values = unetForward(graph, net, parameters, x);
+        addCompositePass(graph, input, values.y, band, result);
+    }
+    return result;
+}
+
+} // namespace strandlight

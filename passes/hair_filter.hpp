@@ -1,0 +1,43 @@
+// The hair filter: samples, through a network that predicts brightness, transmittance and a colour
+// kernel, to hair over a background.
+// Currius, Assarsson, Sintorn. Real-Time Hair Filtering with Convolutional Neural Networks. 2022
+#pragma once
+
+#include <cstdint>
+
+#include "compute_nn/network_shapes.hpp"
+#include "compute_nn/parameters.hpp"
+#include "passes/hair_passes.hpp"
+
+namespace strandlight {
+
+struct HairFilterInput
+{
+    HairSampleIds samples; // with features
+    ImageId mean;          // RGBA32F, the four samples' mean (HairSums::hair)
+    ImageId exact;         // R32F (addHairCoveragePass)
+    HairDepthScale depth;
+};
+
+struct HairFilterSettings
+{
+    // Of the picture, filtered at once; a multiple of 8, 0: as many as the device can bind. What
+    // a band's pixels see of its neighbours is computed twice, so bands change no bit.
+    std::uint32_t bandRows = 0;
+};
+
+struct HairComposite
+{
+    ImageId filtered; // RGBA32F: premultiplied hair radiance, 1 - transmittance
+    ImageId radiance; // RGBA32F: hair over the background
+};
+
+// `over` holds zeros in `filtered` and the background in `radiance`. Pixels whose exact
+// transmittance is 1 keep both. Throws Error when the network is not one of 25 planes to 12 whose
+// levels divide 8.
+HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
+                                  const ParameterIds& parameters, const HairFilterInput& input,
+                                  const HairComposite& over,
+                                  const HairFilterSettings& settings = {});
+
+} // namespace strandlight

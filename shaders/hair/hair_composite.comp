@@ -1,0 +1,57 @@
+// The network's answer over the background. Brightness and transmittance are the network's, the colour is that of the
+// samples around, weighted by the kernel it predicts. Pixels that no strand touches stay as they are.
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shared/hair_types.h"
+#include "nn/filter_weights.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0, r32f) uniform readonly imageBuffer y;          // [12,H,W]
+layout(binding = 1, rgba32f) uniform readonly image2D samples;     // mean of four: premultiplied radiance
+layout(binding = 2) uniform sampler2D exact;                       // transmittance
+layout(binding = 3, rgba32f) uniform writeonly image2D filtered;   // premultiplied radiance, 1 - transmittance
+layout(binding = 4, rgba32f) uniform image2D radiance;             // background, then hair over it
+layout(push_constant, scalar) uniform Push { HairCompositePush push; };
+
+float luminance(vec3 c)
+{
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y + push.firstRow);
+    if (pixel.x >= int(push.width) || pixel.y >= int(push.endRow)) {
+        return;
+    }
+    float exactHere = texelFetch(exact, pixel, 0).x;
+    if (exactHere == 1.0) {
+        return;
+    }
+    int plane = int(push.y.width * push.y.height);
+    int at = int(push.y.offset) + (pixel.y - int(push.tensorRow)) * int(push.y.width) + pixel.x;
+    float brightness = nnExp(imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
+    brightness = brightness < 0.0 ? 0.0 : brightness;
+    float transmittance = exactHere + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;
+    transmittance = transmittance < 0.0 ? 0.0 : transmittance > 1.0 ? 1.0 : transmittance; // NaN stays
+
+    float weight[kFilterTaps];
+    bool inside[kFilterTaps];
+    [[unroll]] for (int k = 0; k < int(kFilterTaps); ++k) {
+        ivec2 tap = pixel + ivec2(k % 3 - 1, k / 3 - 1);
+        inside[k] = uint(tap.x) < push.width && uint(tap.y) < push.height;
+        weight[k] = imageLoad(y, at + (int(kHairOutLogits) + k) * plane).x;
+    }
+    filterWeights(weight, inside);
+    vec3 color = vec3(0.0);
+    [[unroll]] for (int k = 0; k < int(kFilterTaps); ++k) {
+        ivec2 tap = inside[k] ? pixel + ivec2(k % 3 - 1, k / 3 - 1) : pixel;
+        color += weight[k] * imageLoad(samples, tap).rgb;
+    }
+    float size = luminance(color);
+    vec3 hair = size > 0.0 ? color * (brightness / size) : vec3(brightness); // grey where no sample knows better
+    imageStore(filtered, pixel, vec4(hair, 1.0 - transmittance));
+    imageStore(radiance, pixel, vec4(hair + transmittance * imageLoad(radiance, pixel).rgb, 1.0));
+}

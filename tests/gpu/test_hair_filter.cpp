@@ -1,0 +1,199 @@
+// The hair filter against its parts in double: planes, network, kernel, composite; and that what no
+// strand touches stays as it is.
+#include <cmath>
+#include <cstring>
+
+#include <doctest/doctest.h>
+
+#include "compute_nn/reference/kernel_filter.hpp"
+#include "compute_nn/reference/networks.hpp"
+#include "engine/base/error.hpp"
+#include "passes/hair_filter.hpp"
+#include "passes/hair_network.hpp"
+#include "tests/gpu/hair_cases.hpp"
+#include "tests/support/gpu_fixture.hpp"
+
+using namespace strandlight;
+using namespace strandlight::test;
+
+namespace {
+
+constexpr std::uint32_t kWidth = 45, kHeight = 70; // neither is a multiple of 8
+
+// Strands in the upper left of the picture; the rest is empty.
+HairStrands someStrands()
+{
+    HairStrands hair;
+    for (int i = 0; i < 24; ++i) {
+        const float x = -20.0f + 0.9f * float(i), tilt = float(i % 5) - 2.0f;
+        addStrand(hair, {{x, 30.0f, 0.0f}, {x + tilt, 12.0f, 3.0f}, {x - tilt, -2.0f, 0.0f}}, 0.4f);
+    }
+    for (std::size_t i = 0; i < hair.colors.size(); ++i)
+        hair.colors[i] = {0.8f, 0.3f + 0.01f * float(i % 40), 0.1f};
+    return hair;
+}
+
+HairNetwork someNetwork(const UNetDesc& net)
+{
+    return {net, Parameters(context(), net.parameters(), 17)};
+}
+
+struct Filtered
+{
+    CpuImage mean, exact, filtered, radiance;
+    std::vector<float> planes; // whole picture, dense
+};
+
+Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
+                const CpuImage& background)
+{
+    const HairStrands hair = someStrands();
+    const Camera camera = pixelCamera(kHeight);
+    HairRenderSettings render = plainSettings(kHeight);
+    render.width = kWidth;
+    const std::vector<gpu::HairLight> lights = hairLights(hair, nullptr, render);
+    HairBuffers buffers = uploadHair(context(), hair, nullptr, lights, 1);
+    HairView view;
+    view.viewProjection =
+        cameraViewProjection(camera, kWidth, kHeight, hairDepthRange(hair, nullptr, camera));
+    view.eye = camera.eye;
+    view.width = kWidth;
+    view.height = kHeight;
+    const ImageDesc desc{kWidth, kHeight, 1, Format::RGBA32F, 1};
+    Image mean(context(), desc, "mean"), behind(context(), desc, "behind");
+    Image filtered(context(), desc, "filtered"), radiance(context(), desc, "radiance");
+    radiance.upload(background);
+
+    RenderGraph graph(context());
+    const BufferId shaded = addHairShadingPasses(graph, buffers, lights, {false}, view, render);
+    HairFilterInput input;
+    input.samples = addHairStrandsPass(graph, buffers, shaded, view, render, 1, false, true);
+    input.exact = addHairCoveragePass(graph, buffers, view);
+    input.mean = addHairResolvePass(graph, input.samples,
+                                    {graph.importImage(mean), graph.importImage(behind)}, 1.0f)
+                     .hair;
+    input.depth = hairDepthScale(hair, camera);
+    const ParameterIds weights(graph, network.parameters);
+    const HairComposite over{graph.importImage(filtered), graph.importImage(radiance)};
+    addHairFilterPasses(graph, network.net, weights, input, over, settings);
+    const TensorId planes =
+        addHairInputPass(graph, input.samples, input.exact, input.depth,
+                         createTensor(graph, "planes", hairInputDesc(kWidth, kHeight)));
+    graph.output(input.exact);
+    graph.output(planes.buffer);
+    graph.run();
+    CHECK_EQ(context().validationMessages(), 0);
+    return {mean.download(), graph.read(input.exact), filtered.download(), radiance.download(),
+            graph.read<float>(planes.buffer)};
+}
+
+bool sameBytes(const CpuImage& a, const CpuImage& b)
+{
+    return a.pixels.size() == b.pixels.size() &&
+           std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec4)) == 0;
+}
+
+CpuImage gradient()
+{
+    CpuImage image(kWidth, kHeight);
+    for (std::uint32_t y = 0; y < kHeight; ++y)
+        for (std::uint32_t x = 0; x < kWidth; ++x)
+            image.at(x, y) = {0.1f * float(x), 0.05f * float(y), 0.3f, 1.0f};
+    return image;
+}
+
+// What the filter shows at a pixel, from the network's output in double.
+glm::dvec4 expectedHair(const Filtered& f, const TensorDesc& desc, const std::vector<double>& y,
+                        std::uint32_t px, std::uint32_t py)
+{
+    const auto out = [&](std::uint32_t channel) {
+        return y[(std::size_t(channel) * desc.h + py) * desc.w + px];
+    };
+    std::array<double, 9> logits{};
+    std::array<bool, 9> inside{};
+    for (std::uint32_t k = 0; k < 9; ++k) {
+        logits[k] = out(gpu::kHairOutLogits + k);
+        inside[k] = px + k % 3 - 1 < kWidth && py + k / 3 - 1 < kHeight; // wraps below 0
+    }
+    const auto weights = reference::filterWeights<double>(logits, inside);
+    glm::dvec3 color(0.0);
+    for (std::uint32_t k = 0; k < 9; ++k)
+        if (inside[k])
+            color += weights[k] * glm::dvec3(f.mean.at(px + k % 3 - 1, py + k / 3 - 1));
+    const double brightness = std::max(std::expm1(out(gpu::kHairOutBrightness)), 0.0);
+    const double size = glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
+    const glm::dvec3 hair = size > 0.0 ? color * (brightness / size) : glm::dvec3(brightness);
+    const double transmittance =
+        std::clamp(f.exact.at(px, py).x + out(gpu::kHairOutTransmittance), 0.0, 1.0);
+    return {hair, 1.0 - transmittance};
+}
+
+} // namespace
+
+TEST_CASE("hair filter: the picture is what planes, network and kernel give in double")
+{
+    HairNetwork network = someNetwork(hairUNet(HairUNetSize::Small));
+    const CpuImage background = gradient();
+    const Filtered f = filter(network, {}, background);
+    const TensorDesc desc = hairInputDesc(kWidth, kHeight);
+    const std::vector<float> w = network.net.parameters().initialValues(17);
+    const std::vector<double> target(std::size_t(gpu::kHairOutputs) * desc.pixels(), 0.0);
+    const std::vector<double> y =
+        reference::unet<double>(network.net, std::vector<double>(w.begin(), w.end()), desc,
+                                std::vector<double>(f.planes.begin(), f.planes.end()), target)
+            .output;
+    std::uint32_t touched = 0;
+    double worst = 0.0;
+    for (std::uint32_t py = 0; py < kHeight; ++py)
+        for (std::uint32_t px = 0; px < kWidth; ++px) {
+            if (f.exact.at(px, py).x == 1.0f) {
+                REQUIRE(f.radiance.at(px, py) == background.at(px, py));
+                REQUIRE(f.filtered.at(px, py) == glm::vec4(0.0f));
+                continue;
+            }
+            ++touched;
+            const glm::dvec4 hair = expectedHair(f, desc, y, px, py);
+            const glm::dvec3 shown =
+                glm::dvec3(hair) + (1.0 - hair.w) * glm::dvec3(background.at(px, py));
+            const double scale = 1.0 + glm::length(hair);
+            worst = std::max(worst, glm::length(glm::dvec4(f.filtered.at(px, py)) - hair) / scale);
+            worst = std::max(worst, glm::length(glm::dvec3(f.radiance.at(px, py)) - shown) / scale);
+        }
+    CHECK_GT(touched, 300);
+    CHECK_LT(touched, kWidth * kHeight / 2);
+    CHECK_LE(worst, 1e-4); // fp32 through seven layers, then an exponential
+}
+
+TEST_CASE("hair filter: bands of rows give the bits of the whole picture")
+{
+    HairNetwork network = someNetwork(hairUNet(HairUNetSize::Small));
+    const Filtered whole = filter(network, {}, gradient());
+    for (const std::uint32_t rows : {8u, 24u, 40u}) {
+        CAPTURE(rows);
+        const Filtered bands = filter(network, {.bandRows = rows}, gradient());
+        CHECK(sameBytes(bands.radiance, whole.radiance));
+        CHECK(sameBytes(bands.filtered, whole.filtered));
+    }
+}
+
+TEST_CASE("hair filter: a picture by a network, twice the same, and what it refuses")
+{
+    HairNetwork network = someNetwork(hairUNet(HairUNetSize::Small));
+    HairRenderSettings settings = plainSettings(40);
+    settings.filter = HairFilter::UNet;
+    const auto render = [&] {
+        return renderHair(context(), someStrands(), nullptr, pixelCamera(40), settings);
+    };
+    CHECK_THROWS_WITH_AS((void)render(), doctest::Contains("no network"), Error);
+    settings.network = &network;
+    const HairFrame frame = render();
+    CHECK(sameBytes(frame.radiance, render().radiance));
+    CHECK(frame.radiance.at(39, 39).x == doctest::Approx(settings.backgroundColor.x));
+    CHECK(frame.hair.at(39, 39) == glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    settings.frames = 2;
+    CHECK_THROWS_WITH_AS((void)render(), doctest::Contains("four samples"), Error);
+    settings.frames = 1;
+    HairNetwork wrong = someNetwork(UNetDesc{});
+    settings.network = &wrong;
+    CHECK_THROWS_WITH_AS((void)render(), doctest::Contains("24 planes to 3"), Error);
+}
