@@ -23,20 +23,21 @@ void checkShapes(std::string_view name, const Conv2dDesc& desc, const TensorDesc
 
 TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
                        const TensorId& x, const LayerWeights& weights, const TensorId& y,
-                       const Activation& activation)
+                       const Activation& activation, const TileList* tiles)
 {
     checkShapes(name, desc, x.desc, y.desc);
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
-    return addGatherConvPass(graph, name,
-                             {.kernel = desc.kernel,
-                              .stride = desc.stride,
-                              .padding = desc.padding,
-                              .weightStrideOut = desc.in * taps,
-                              .weightStrideIn = taps,
-                              .slope = fusedSlope(activation),
-                              .bias = weights.hasBias,
-                              .backward = {}},
-                             x, weights, y);
+    return addConvPass(graph, name,
+                       {.kernel = desc.kernel,
+                        .stride = desc.stride,
+                        .padding = desc.padding,
+                        .weightStrideOut = desc.in * taps,
+                        .weightStrideIn = taps,
+                        .slope = fusedSlope(activation),
+                        .bias = weights.hasBias,
+                        .backward = {},
+                        .tiles = tiles},
+                       x, weights, y);
 }
 
 TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
@@ -50,15 +51,15 @@ TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Co
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
     LayerWeights range = weights;
     range.weightOffset += epilogue.firstInput * taps;
-    return addGatherConvPass(graph, name,
-                             {.transposed = true,
-                              .kernel = desc.kernel,
-                              .stride = desc.stride,
-                              .padding = desc.padding,
-                              .weightStrideOut = taps,
-                              .weightStrideIn = desc.in * taps,
-                              .backward = epilogue},
-                             dY, range, dX);
+    return addConvPass(graph, name,
+                       {.transposed = true,
+                        .kernel = desc.kernel,
+                        .stride = desc.stride,
+                        .padding = desc.padding,
+                        .weightStrideOut = taps,
+                        .weightStrideIn = desc.in * taps,
+                        .backward = epilogue},
+                       dY, range, dX);
 }
 
 BufferId conv2dBackwardWeight(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,

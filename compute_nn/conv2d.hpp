@@ -4,15 +4,16 @@
 
 #include "compute_nn/activation_kind.hpp"
 #include "compute_nn/conv_passes.hpp"
+#include "compute_nn/tile_list.hpp"
 
 namespace strandlight {
 
 // x [N,I,H,W], weight [O,I,Kh,Kw], bias [O] -> y [N,O,Oh,Ow] = activation(conv(x) + bias),
-// overwritten. Of the activations, None, Relu and LeakyRelu can be fused. Throws Error when shapes
-// do not fit.
+// overwritten; with tiles (N = 1) only in those. Of the activations, None, Relu and LeakyRelu can
+// be fused. Throws Error when shapes do not fit.
 TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
                        const TensorId& x, const LayerWeights& weights, const TensorId& y,
-                       const Activation& activation = {});
+                       const Activation& activation = {}, const TileList* tiles = nullptr);
 
 // dY [N,O,Oh,Ow] (before the activation) -> dX [N,I,H,W].
 TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,

@@ -1,5 +1,5 @@
-// The two kernels behind convolutions and transposed convolutions. A transposed convolution is the
-// data gradient of a convolution and the other way round, so four passes share one gather; both
+// The kernels behind convolutions and transposed convolutions. A transposed convolution is the
+// data gradient of a convolution and the other way round, so four passes share one function; both
 // weight gradients share one correlation.
 #pragma once
 
@@ -10,6 +10,8 @@
 #include "compute_nn/tensor.hpp"
 
 namespace strandlight {
+
+struct TileList;
 
 // Weights, bias or their gradients inside a block of floats.
 struct LayerWeights
@@ -31,8 +33,8 @@ struct BackwardEpilogue
         0; // dX holds the channels of x from here on; 0 and all: the whole of x
 };
 
-// result = gather of `source` by the taps; internal to conv2d.cpp and conv_transpose2d.cpp.
-struct GatherConv
+// One convolution or transposed convolution; internal to conv2d.cpp and conv_transpose2d.cpp.
+struct ConvPass
 {
     bool transposed = false;
     Extent2 kernel, stride, padding;
@@ -41,10 +43,11 @@ struct GatherConv
     float slope = 1.0f;
     bool bias = false;
     BackwardEpilogue backward;
+    const TileList* tiles = nullptr; // null: the whole result
 };
-TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const GatherConv& conv,
-                           const TensorId& source, const LayerWeights& weights,
-                           const TensorId& result);
+// Chooses the kernel by the table of conv_tiles.cpp.
+TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
+                     const TensorId& source, const LayerWeights& weights, const TensorId& result);
 
 // weight gradient[a,b,ky,kx] += sum small[n,a,y,x] large[n,b, y sh - ph + ky, x sw - pw + kx]
 BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,

@@ -24,21 +24,22 @@ void checkShapes(std::string_view name, const ConvTranspose2dDesc& desc, const T
 TensorId convTranspose2dForward(RenderGraph& graph, std::string_view name,
                                 const ConvTranspose2dDesc& desc, const TensorId& x,
                                 const LayerWeights& weights, const TensorId& y,
-                                const Activation& activation)
+                                const Activation& activation, const TileList* tiles)
 {
     checkShapes(name, desc, x.desc, y.desc);
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
-    return addGatherConvPass(graph, name,
-                             {.transposed = true,
-                              .kernel = desc.kernel,
-                              .stride = desc.stride,
-                              .padding = desc.padding,
-                              .weightStrideOut = taps,
-                              .weightStrideIn = desc.out * taps,
-                              .slope = fusedSlope(activation),
-                              .bias = weights.hasBias,
-                              .backward = {}},
-                             x, weights, y);
+    return addConvPass(graph, name,
+                       {.transposed = true,
+                        .kernel = desc.kernel,
+                        .stride = desc.stride,
+                        .padding = desc.padding,
+                        .weightStrideOut = taps,
+                        .weightStrideIn = desc.out * taps,
+                        .slope = fusedSlope(activation),
+                        .bias = weights.hasBias,
+                        .backward = {},
+                        .tiles = tiles},
+                       x, weights, y);
 }
 
 TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,
@@ -53,14 +54,14 @@ TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
     LayerWeights range = weights;
     range.weightOffset += epilogue.firstInput * desc.out * taps;
-    return addGatherConvPass(graph, name,
-                             {.kernel = desc.kernel,
-                              .stride = desc.stride,
-                              .padding = desc.padding,
-                              .weightStrideOut = desc.out * taps,
-                              .weightStrideIn = taps,
-                              .backward = epilogue},
-                             dY, range, dX);
+    return addConvPass(graph, name,
+                       {.kernel = desc.kernel,
+                        .stride = desc.stride,
+                        .padding = desc.padding,
+                        .weightStrideOut = desc.out * taps,
+                        .weightStrideIn = taps,
+                        .backward = epilogue},
+                       dY, range, dX);
 }
 
 BufferId convTranspose2dBackwardWeight(RenderGraph& graph, std::string_view name,

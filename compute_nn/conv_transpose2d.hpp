@@ -3,15 +3,16 @@
 
 #include "compute_nn/activation_kind.hpp"
 #include "compute_nn/conv_passes.hpp"
+#include "compute_nn/tile_list.hpp"
 
 namespace strandlight {
 
 // x [N,I,H,W], weight [I,O,Kh,Kw], bias [O] -> y [N,O,Oh,Ow] = activation(transposed conv(x) +
-// bias), overwritten.
+// bias), overwritten; with tiles (N = 1) only in those.
 TensorId convTranspose2dForward(RenderGraph& graph, std::string_view name,
                                 const ConvTranspose2dDesc& desc, const TensorId& x,
                                 const LayerWeights& weights, const TensorId& y,
-                                const Activation& activation = {});
+                                const Activation& activation = {}, const TileList* tiles = nullptr);
 
 // dY [N,O,Oh,Ow] (before the activation) -> dX [N,I,H,W].
 TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,

@@ -118,7 +118,7 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
     VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &v11};
     vkGetPhysicalDeviceProperties2(state.physical, &properties);
     state.properties = properties.properties;
-    state.subgroupSize = v11.subgroupSize;
+    state.subgroupSize = settings.subgroups ? v11.subgroupSize : 1;
 
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};

@@ -23,6 +23,7 @@ struct ContextSettings
     bool validation = false;        // core and synchronization; a message makes the submit throw
     bool pipelineCache = true;      // on disk, $XDG_CACHE_HOME/strandlight
     std::uint64_t memoryBudget = 0; // bytes; 0: 80 % of the device's heap
+    bool subgroups = true;          // false: kernels take the forms that need no subgroup
 };
 
 struct VulkanState; // the Vulkan objects; engine/vk and engine/graph's executor only

@@ -18,11 +18,19 @@ STRANDLIGHT_CONST(float) kSgTinyAxis = 1e-30f;       // an axis shorter than thi
 
 STRANDLIGHT_CONST(float) kRelativeLossFloor = 0.01f; // (radiance)^2
 
-// What a convolution kernel adds to its sum; bits of specialisation constant 3.
+// What a convolution kernel adds to its sum; bits of its FLAGS.
 STRANDLIGHT_CONST(uint) kConvBias = 1u;       // + bias[o]
 STRANDLIGHT_CONST(uint) kConvAccumulate = 2u; // + what the output holds already
 STRANDLIGHT_CONST(uint) kConvDerivative = 4u; // x (saved > 0 ? 1 : slope): back through a leaky relu
 STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; needs 8 lanes or more
+
+STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
+
+// Tiles of a TileList, in pixels of the layer's output: a multiple of every register tile of the row kernels.
+STRANDLIGHT_CONST(uint) kConvTileWidth = 40u;
+STRANDLIGHT_CONST(uint) kConvTileHeight = 8u;
+// Indirect arguments (tiles, b, 1) of a TileList for b = 1, 2, ... blocks of output channels.
+STRANDLIGHT_CONST(uint) kConvTileBlocks = 16u;
 
 // Where a planar tensor, or a range of its channels, lies in a buffer of floats.
 struct TensorView
@@ -55,6 +63,25 @@ struct ConvPush
     uint firstPixel; // this dispatch works on pixels [firstPixel, endPixel) of the [N,H,W] grid of one phase
     uint endPixel;
     float slope; // of the activation below zero; 1: no activation
+};
+
+// conv_rows.comp and conv_transpose_rows.comp; kernel, stride and padding are specialisation constants.
+struct ConvRowsPush
+{
+    TensorView source;
+    TensorView result;
+    uint savedOffset;
+    uint savedImageStride;
+    uint inChannels;
+    uint outChannels;
+    uint weightOffset;
+    uint weightStrideOut;
+    uint weightStrideIn;
+    uint biasOffset;
+    uint firstChannel; // of this dispatch
+    uint firstStrip;   // this dispatch works on strips [firstStrip, endStrip)
+    uint endStrip;
+    float slope;
 };
 
 // dWeight[a,b,ky,kx] = sum over n,y,x of small[n,a,y,x] large[n,b, y stride - padding + ky, x stride - padding + kx]
@@ -164,6 +191,7 @@ STRANDLIGHT_SHARED_END
 
 #ifdef __cplusplus
 static_assert(sizeof(strandlight::gpu::ConvPush) == 104);
+static_assert(sizeof(strandlight::gpu::ConvRowsPush) == 80);
 static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 76);
 #endif
 

@@ -61,4 +61,22 @@ inline std::vector<ConvCase> convCases(std::uint32_t count)
     return cases;
 }
 
+// The shapes that have sliding-window kernels (compute_nn/conv_tiles.cpp), at widths around their
+// tiles.
+inline std::vector<ConvCase> rowConvCases()
+{
+    return {
+        makeConvCase({2, 24, 7, 41}, 33, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 33, 5, 16}, 3, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 1, 3, 1}, 1, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 2, 9, 23}, 17, {3, 3}, {1, 1}, {0, 2}, {0, 0}), // other paddings
+        makeConvCase({1, 3, 11, 79}, 24, {3, 3}, {2, 2}, {1, 1}, {1, 0}),
+        makeConvCase({2, 5, 6, 37}, 16, {3, 3}, {2, 2}, {1, 1}, {1, 1}),
+        makeConvCase({1, 7, 8, 82}, 16, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
+        makeConvCase({2, 3, 7, 33}, 5, {4, 4}, {2, 2}, {1, 1}, {0, 1}),
+        makeConvCase({1, 9, 10, 43}, 24, {2, 2}, {2, 2}, {0, 0}, {1, 1}),
+        makeConvCase({1, 24, 3, 47}, 10, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
+    };
+}
+
 } // namespace strandlight::test

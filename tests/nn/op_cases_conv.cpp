@@ -85,7 +85,8 @@ std::vector<Output> runOnDevice(Context& context, const LayerCase<Desc>& c)
     const LayerWeights weights{graph.uploadBuffer("weights", std::span(block)), 0, count, c.bias};
     LayerWeights gradient{graph.uploadBuffer("gradient", std::span(old)), 0, count, c.bias};
 
-    y = Ops::forward(graph, "forward", c.desc, x, weights, y, Activation::leakyRelu(c.kSlope));
+    y = Ops::forward(graph, "forward", c.desc, x, weights, y, Activation::leakyRelu(c.kSlope),
+                     nullptr);
     dX = Ops::backwardInput(graph, "dX", c.desc, dY, weights, dX,
                             {.accumulate = true, .activated = x, .slope = c.kSlope});
     gradient.block = Ops::backwardWeight(graph, "dW", c.desc, x, dY, gradient);
@@ -130,32 +131,48 @@ void addLayer(std::vector<OpCase>& cases, const char* op, const LayerCase<Desc>&
 
 } // namespace
 
+namespace {
+
+// Both directions of one shape.
+void addShape(std::vector<OpCase>& cases, const ConvCase& c, bool bias, bool ranges,
+              std::uint32_t seed)
+{
+    addLayer<ConvOps>(cases, "conv2d",
+                      LayerCase<Conv2dDesc>{c.conv, c.x, c.conv.output(c.x), bias, ranges, seed});
+    // The padding may exceed what a transposed kernel covers; such a layer has no output.
+    const ConvTranspose2dDesc& t = c.transpose;
+    if ((c.x.h - 1) * t.stride.h + t.kernel.h + t.outputPadding.h <= 2 * t.padding.h ||
+        (c.x.w - 1) * t.stride.w + t.kernel.w + t.outputPadding.w <= 2 * t.padding.w)
+        return;
+    addLayer<ConvTransposeOps>(
+        cases, "conv_transpose2d",
+        LayerCase<ConvTranspose2dDesc>{t, c.x, t.output(c.x), bias, ranges, seed + 5});
+}
+
+} // namespace
+
+void addSubgroupCases(std::vector<OpCase>& cases)
+{
+    for (const ConvCase& c : {makeConvCase({2, 6, 9, 7}, 13, {3, 3}, {2, 2}, {1, 1}, {0, 0}),
+                              makeConvCase({1, 5, 6, 23}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0})})
+        addShape(cases, c, true, true, 3);
+}
+
 void addConvCases(std::vector<OpCase>& cases)
 {
     std::uint32_t seed = 100;
-    for (const ConvCase& c : convCases(36)) {
+    const auto add = [&](const ConvCase& c) {
         seed += 10;
-        const bool bias = seed % 40 != 0, ranges = seed % 30 == 0;
-        addLayer<ConvOps>(
-            cases, "conv2d",
-            LayerCase<Conv2dDesc>{c.conv, c.x, c.conv.output(c.x), bias, ranges, seed});
-        // The padding may exceed what a transposed kernel covers; such a layer has no output.
-        const ConvTranspose2dDesc& t = c.transpose;
-        if ((c.x.h - 1) * t.stride.h + t.kernel.h + t.outputPadding.h <= 2 * t.padding.h ||
-            (c.x.w - 1) * t.stride.w + t.kernel.w + t.outputPadding.w <= 2 * t.padding.w)
-            continue;
-        addLayer<ConvTransposeOps>(
-            cases, "conv_transpose2d",
-            LayerCase<ConvTranspose2dDesc>{t, c.x, t.output(c.x), bias, ranges, seed + 5});
-    }
+        addShape(cases, c, seed % 40 != 0, seed % 30 == 0, seed);
+    };
+    for (const ConvCase& c : convCases(36))
+        add(c);
+    for (const ConvCase& c : rowConvCases())
+        add(c);
     // Many small images, as the encoder has them; and more pixels than one strip of the weight
     // gradient.
-    const ConvCase small = makeConvCase({257, 5, 2, 2}, 9, {3, 3}, {2, 2}, {1, 1}, {0, 0});
-    addLayer<ConvOps>(cases, "conv2d",
-                      LayerCase<Conv2dDesc>{small.conv, small.x, small.conv.output(small.x)});
-    const ConvCase wide = makeConvCase({1, 3, 61, 151}, 4, {3, 3}, {1, 1}, {1, 1}, {0, 0});
-    addLayer<ConvOps>(cases, "conv2d",
-                      LayerCase<Conv2dDesc>{wide.conv, wide.x, wide.conv.output(wide.x)});
+    add(makeConvCase({257, 5, 2, 2}, 9, {3, 3}, {2, 2}, {1, 1}, {0, 0}));
+    add(makeConvCase({1, 3, 61, 151}, 4, {3, 3}, {1, 1}, {1, 1}, {0, 0}));
 }
 
 } // namespace strandlight::test

@@ -1,0 +1,100 @@
+#include "compute_nn/conv_rows.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "compute_nn/conv_work.hpp"
+#include "compute_nn/tile_list.hpp"
+#include "engine/base/assert.hpp"
+#include "kernels.gen.hpp"
+
+namespace strandlight {
+
+namespace {
+
+constexpr std::uint32_t kGroup = 64;         // strips of a workgroup
+constexpr std::uint32_t kMaxGroups = 65535u; // of any device, per axis
+
+} // namespace
+
+TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
+                        const RowTile& tile, const TensorId& source, const LayerWeights& weights,
+                        const TensorId& result)
+{
+    const Extent2 scale = conv.transposed ? conv.stride : Extent2{1, 1};
+    const std::uint32_t turn = unroll(source.desc.c, tile.turn);
+    checkTripBudget("conv_rows", source.desc.c / turn + 1);
+    const std::uint32_t blocks = divideUp(result.desc.c, tile.channels);
+    const std::uint32_t channels = divideUp(result.desc.c, blocks);
+    const std::uint32_t strips = result.desc.n * divideUp(result.desc.h, scale.h) *
+                                 divideUp(divideUp(result.desc.w, scale.w), tile.columns);
+    const std::uint64_t blockWork = std::uint64_t(conv.kernel.h) * conv.kernel.w * source.desc.c *
+                                    channels * tile.columns; // of one strip
+
+    PassBuilder pass = graph.addComputePass(name);
+    const BufferId from = pass.read(source.buffer);
+    const BufferId parameters = pass.read(weights.block);
+    const BufferId to = pass.write(result.buffer);
+    const BackwardEpilogue& epilogue = conv.backward;
+    const bool derivative = epilogue.activated.has_value();
+    const BufferId saved = derivative ? pass.read(epilogue.activated->buffer) : from;
+    const gpu::TensorView savedView = derivative ? epilogue.activated->view() : gpu::TensorView{};
+    const std::uint32_t flags = (conv.bias ? gpu::kConvBias : 0) |
+                                (epilogue.accumulate ? gpu::kConvAccumulate : 0) |
+                                (derivative ? gpu::kConvDerivative : 0) |
+                                (conv.tiles ? gpu::kConvTiles : 0) | shuffleFlag(graph);
+    gpu::ConvRowsPush push{.source = source.view(),
+                           .result = result.view(),
+                           .savedOffset = savedView.offset,
+                           .savedImageStride = savedView.imageStride,
+                           .inChannels = source.desc.c,
+                           .outChannels = result.desc.c,
+                           .weightOffset = weights.weightOffset,
+                           .weightStrideOut = conv.weightStrideOut,
+                           .weightStrideIn = conv.weightStrideIn,
+                           .biasOffset = weights.biasOffset,
+                           .firstChannel = 0,
+                           .firstStrip = 0,
+                           .endStrip = strips,
+                           .slope = derivative ? epilogue.slope : conv.slope};
+    const std::uint32_t stripsPerTile =
+        (gpu::kConvTileWidth / (scale.w * tile.columns)) * (gpu::kConvTileHeight / scale.h);
+    const std::vector<std::uint32_t> constants = {conv.tiles ? stripsPerTile : kGroup,
+                                                  channels,
+                                                  tile.columns,
+                                                  turn,
+                                                  conv.kernel.h,
+                                                  conv.kernel.w,
+                                                  conv.stride.h,
+                                                  conv.stride.w,
+                                                  conv.padding.h,
+                                                  conv.padding.w,
+                                                  flags};
+    const KernelBlob& kernel = conv.transposed ? kernels::conv_transpose_rows : kernels::conv_rows;
+
+    if (conv.tiles) { // cut by blocks of channels, as if all tiles were active
+        STRANDLIGHT_ASSERT_EQ(result.desc.n, 1u);
+        const BufferId tiles = pass.read(conv.tiles->tiles);
+        const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
+            kDispatchWork / (blockWork * strips), 1, gpu::kConvTileBlocks));
+        for (std::uint32_t first = 0; first < blocks; first += slice) {
+            push.firstChannel = first * channels;
+            pass.dispatchIndirect(kernel, conv.tiles->arguments,
+                                  (std::min(slice, blocks - first) - 1) * 12u, push,
+                                  {from, parameters, saved, tiles, to}, constants);
+        }
+        return result.as(to);
+    }
+    const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
+                                    kDispatchWork / (blockWork * blocks * kGroup), 1, kMaxGroups)) *
+                                kGroup;
+    for (std::uint32_t first = 0; first < strips; first += slice) {
+        push.firstStrip = first;
+        push.endStrip = std::min(strips, first + slice);
+        pass.dispatch(kernel, {push.endStrip - first, blocks, 1}, push,
+                      {from, parameters, saved, from, to}, constants);
+    }
+    return result.as(to);
+}
+
+} // namespace strandlight

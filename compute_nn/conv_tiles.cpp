@@ -1,0 +1,63 @@
+#include "compute_nn/conv_tiles.hpp"
+
+#include <span>
+
+#include "shaders/shared/nn_types.h"
+
+namespace strandlight {
+
+namespace {
+
+struct Case
+{
+    RowShape shape;
+    std::uint32_t minimumWidth; // of the grid, for batches
+    RowTile tile;
+};
+
+constexpr bool kConv = false, kTransposed = true;
+
+// lavapipe (Mesa 22.3.6, 256 bits): sums stay in the first-level cache up to about 128 vectors, and
+// code beyond about 1,500 multiply-adds a turn runs slower than it saves loads.
+constexpr Case kCpu[] = {
+    {{kConv, {3, 3}, {1, 1}}, 8, {16, 8, 1}},      {{kConv, {3, 3}, {2, 2}}, 8, {16, 8, 1}},
+    {{kConv, {4, 4}, {2, 2}}, 8, {16, 5, 1}},      {{kConv, {2, 2}, {2, 2}}, 8, {16, 8, 2}},
+    {{kConv, {1, 1}, {1, 1}}, 8, {16, 8, 4}},      {{kTransposed, {3, 3}, {1, 1}}, 8, {16, 8, 1}},
+    {{kTransposed, {3, 3}, {2, 2}}, 8, {8, 4, 1}}, {{kTransposed, {4, 4}, {2, 2}}, 8, {8, 4, 1}},
+    {{kTransposed, {2, 2}, {2, 2}}, 8, {8, 4, 4}},
+};
+
+// Not measured: half the tile, so that the sums fit 255 registers with room to hide latency.
+constexpr Case kGpu[] = {
+    {{kConv, {3, 3}, {1, 1}}, 32, {8, 4, 1}},       {{kConv, {3, 3}, {2, 2}}, 32, {8, 4, 1}},
+    {{kConv, {4, 4}, {2, 2}}, 32, {8, 4, 1}},       {{kConv, {2, 2}, {2, 2}}, 32, {8, 4, 2}},
+    {{kConv, {1, 1}, {1, 1}}, 32, {8, 4, 4}},       {{kTransposed, {3, 3}, {1, 1}}, 32, {8, 4, 1}},
+    {{kTransposed, {3, 3}, {2, 2}}, 32, {4, 2, 1}}, {{kTransposed, {4, 4}, {2, 2}}, 32, {4, 2, 1}},
+    {{kTransposed, {2, 2}, {2, 2}}, 32, {4, 2, 4}},
+};
+
+constexpr bool dividesTiles(std::span<const Case> cases)
+{
+    for (const Case& c : cases) {
+        const Extent2 scale = c.shape.transposed ? c.shape.stride : Extent2{1, 1};
+        if (gpu::kConvTileHeight % scale.h != 0 ||
+            gpu::kConvTileWidth % (scale.w * c.tile.columns) != 0)
+            return false;
+    }
+    return true;
+}
+static_assert(dividesTiles(kCpu) && dividesTiles(kGpu));
+
+} // namespace
+
+const RowTile* findRowTile(std::string_view deviceType, const RowShape& shape,
+                           std::uint32_t gridWidth, std::uint32_t images)
+{
+    for (const Case& c : deviceType == "cpu" ? std::span<const Case>(kCpu) : kGpu)
+        if (c.shape.transposed == shape.transposed && c.shape.kernel == shape.kernel &&
+            c.shape.stride == shape.stride)
+            return images == 1 || gridWidth >= c.minimumWidth ? &c.tile : nullptr;
+    return nullptr;
+}
+
+} // namespace strandlight

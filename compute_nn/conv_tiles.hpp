@@ -1,0 +1,33 @@
+// Which kernel and register tile a convolution gets: one table of measured cases per class of
+// device.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "compute_nn/conv_desc.hpp"
+
+namespace strandlight {
+
+// Register tile of conv_rows.comp and conv_transpose_rows.comp.
+struct RowTile
+{
+    std::uint32_t channels; // at most; blocks of output channels are made equal
+    std::uint32_t columns;  // of the grid (conv_rows.glsl)
+    std::uint32_t turn;     // input channels per loop turn, at most
+};
+
+struct RowShape
+{
+    bool transposed;
+    Extent2 kernel;
+    Extent2 stride;
+};
+
+// Null: no row kernel pays, the gather (conv.comp) takes it. `deviceType` is DeviceInfo::type. One
+// image never goes to the gather when the table has its shape, so that a list of tiles gives the
+// bits of the whole.
+const RowTile* findRowTile(std::string_view deviceType, const RowShape& shape,
+                           std::uint32_t gridWidth, std::uint32_t images);
+
+} // namespace strandlight
