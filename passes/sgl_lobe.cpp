@@ -44,6 +44,9 @@ void checkLobe(const SgLobe& lobe, std::size_t index, std::uint32_t lobeCount)
                         std::isfinite(lobe.logSharpness);
     if (!finite)
         throw Error(place + " has a value that is not finite");
+    const float brightest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+    if (brightest > kSglLargestAmplitude) // rounded up, the largest floats would become infinite
+        throw Error(place + " has an amplitude of " + std::to_string(brightest));
     const float length = glm::length(lobe.axis);
     if (!(length >= 0.9f && length <= 1.1f))
         throw Error(place + " has an axis of length " + std::to_string(length));

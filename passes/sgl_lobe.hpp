@@ -32,8 +32,9 @@ constexpr std::size_t sglBytesPerLobe(SglStorage storage)
     return storage == SglStorage::Fp16 ? 12 : 8;
 }
 
-// Chooses scale and range. Throws Error, naming the texel, for a lobe that is not finite, whose
-// axis length is outside [0.9, 1.1] or whose ln sharpness is outside [-16, 16].
+// Chooses scale and range. Throws Error, naming the texel, for a lobe that is not finite or
+// brighter than kSglLargestAmplitude, whose axis length is outside [0.9, 1.1] or whose ln sharpness
+// is outside [-16, 16].
 SglLobeCoding chooseCoding(const SgField& field, SglStorage storage);
 
 // `out` holds sglBytesPerLobe() bytes. Returns whether a value was clamped: the packed format has
@@ -44,5 +45,6 @@ SgLobe decodeLobe(std::span<const std::uint8_t> in, const SglLobeCoding& coding)
 // |ln sharpness| beyond this is no light: lambda from 1e-7 (constant) to 9e6 (a hundredth of a
 // degree).
 inline constexpr float kSglMaximumLogSharpness = 16.0f;
+inline constexpr float kSglLargestAmplitude = 1e37f;
 
 } // namespace strandlight

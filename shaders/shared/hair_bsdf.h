@@ -19,29 +19,37 @@ STRANDLIGHT_CONST(float) kHairF0 = 0.046520569f; // ((1 - 1.55) / (1 + 1.55))^2
 STRANDLIGHT_CONST(float) kHairNormTT = 0.73114621f;
 STRANDLIGHT_CONST(float) kHairNormTRT = 1.63245382f;
 
-// log of the modified Bessel function I0. Abramowitz, Stegun. Handbook of Mathematical Functions. 1964 (9.8.1, 9.8.2)
+// log(I0(x) exp(-x)), I0 the modified Bessel function. Abramowitz, Stegun. Handbook of Mathematical Functions. 1964
+// (9.8.1, 9.8.2)
 STRANDLIGHT_FN float hairLogBesselI0(float x)
 {
     if (x < 3.75f) {
         float t = (x / 3.75f) * (x / 3.75f);
         return log(1.0f + t * (3.5156229f + t * (3.0899424f + t * (1.2067492f +
-                   t * (0.2659732f + t * (0.0360768f + t * 0.0045813f))))));
+                   t * (0.2659732f + t * (0.0360768f + t * 0.0045813f)))))) - x;
     }
     float u = 3.75f / x;
     float p = 0.39894228f + u * (0.01328592f + u * (0.00225319f + u * (-0.00157565f + u * (0.00916281f +
               u * (-0.02057706f + u * (0.02635537f + u * (-0.01647633f + u * 0.00392377f)))))));
-    return x + log(p) - 0.5f * log(x);
+    return log(p) - 0.5f * log(x);
 }
 
 // Longitudinal density with the cosine of the incident angle in it: its integral over cos(theta_i) d(theta_i) is 1.
-// All exponents are joined before the one exp: each alone overflows for small variances.
+// Its exponents (I0, the angles, the norm) each reach 3000 for small variances and cancel. Joined by hand they are
+// (cos(theta_i + theta_o) - 1) / v, written as half the squared chord, which keeps its digits.
 STRANDLIGHT_FN float hairLongitudinal(float sinI, float cosI, float sinO, float cosO, float variance)
 {
-    float a = cosI * cosO / variance;
-    float b = sinI * sinO / variance;
-    // log(2 v sinh(1/v)) = 1/v + log(v (1 - exp(-2/v)))
-    float logNorm = 1.0f / variance + log(variance * (1.0f - exp(-2.0f / variance)));
-    return exp(hairLogBesselI0(a) - b - logNorm);
+    float chord2 = (cosI - cosO) * (cosI - cosO) + (sinI + sinO) * (sinI + sinO);
+    float logNorm = log(variance * (1.0f - exp(-2.0f / variance)));
+    return exp(hairLogBesselI0(cosI * cosO / variance) - 0.5f * chord2 / variance - logNorm);
+}
+
+// The part of `direction` across the fibre. Close to the fibre's own direction, direction -+ tangent is exact and small
+// already; direction - tangent * dot() would leave nothing but rounding.
+STRANDLIGHT_FN vec3 hairAcross(vec3 tangent, vec3 direction)
+{
+    vec3 difference = direction - (dot(tangent, direction) < 0.0f ? -tangent : tangent);
+    return difference - tangent * dot(tangent, difference);
 }
 
 // Variance of R; TT has a quarter, TRT four times as much.
@@ -76,13 +84,13 @@ STRANDLIGHT_FN vec3 hairScatter(vec3 tangent, vec3 light, vec3 view, vec3 color,
 {
     float sinI = clamp(dot(tangent, light), -1.0f, 1.0f);
     float sinO = clamp(dot(tangent, view), -1.0f, 1.0f);
-    float cosI = sqrt(max(1.0f - sinI * sinI, 0.0f));
-    float cosO = sqrt(max(1.0f - sinO * sinO, 0.0f));
-    vec3 acrossI = light - tangent * sinI;
-    vec3 acrossO = view - tangent * sinO;
-    float lengths = dot(acrossI, acrossI) * dot(acrossO, acrossO);
+    vec3 acrossI = hairAcross(tangent, light);
+    vec3 acrossO = hairAcross(tangent, view);
+    float cosI = min(length(acrossI), 1.0f);
+    float cosO = min(length(acrossO), 1.0f);
     // Along the fibre there is no azimuth: any will do.
-    float cosPhi = lengths > 1e-12f ? clamp(dot(acrossI, acrossO) / sqrt(lengths), -1.0f, 1.0f) : 1.0f;
+    float lengths = cosI * cosO;
+    float cosPhi = lengths > 1e-12f ? clamp(dot(acrossI, acrossO) / lengths, -1.0f, 1.0f) : 1.0f;
     float cosHalfPhi = sqrt(max(0.5f + 0.5f * cosPhi, 0.0f));
 
     float cosD = max(cosO, 1e-2f);
@@ -118,8 +126,8 @@ STRANDLIGHT_FN vec3 hairScatter(vec3 tangent, vec3 light, vec3 view, vec3 color,
 // faces the viewer, tinted where more fibres were in the way. For unit irradiance before shadowing.
 STRANDLIGHT_FN vec3 hairMultipleScatter(vec3 tangent, vec3 light, vec3 view, vec3 color, float shadow)
 {
-    vec3 across = view - tangent * dot(tangent, view);
-    float size = sqrt(dot(across, across));
+    vec3 across = hairAcross(tangent, view);
+    float size = length(across);
     vec3 normal = size > 1e-4f ? across / size : view;
     float wrapped = clamp((dot(normal, light) + 1.0f) * 0.25f, 0.0f, 1.0f);
     vec3 base = clamp(color, vec3(1e-5f), vec3(1.0f));

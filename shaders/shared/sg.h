@@ -32,15 +32,15 @@ STRANDLIGHT_FN float oneMinusExpOverX(float x)
     return (1.0f - exp(-x)) / x;
 }
 
-// A unit vector along v for any finite v, `fallback` when v has no direction.
+// A unit vector along v, `fallback` when v has no direction: zero, infinite or beyond 3e38. NaN stays NaN, so it shows.
 STRANDLIGHT_FN vec3 safeNormalize(vec3 v, vec3 fallback)
 {
-    float largest = max(abs(v.x), max(abs(v.y), abs(v.z)));
-    if (!(largest > 0.0f) || largest > 3.0e38f) {
+    float size = abs(v.x) + abs(v.y) + abs(v.z); // a sum, not max(), which may drop a NaN
+    if (size == 0.0f || size > 3.0e38f) {
         return fallback;
     }
     // Two steps, so that neither tiny nor huge components leave the range of fp32 when squared.
-    vec3 scaled = v / largest;
+    vec3 scaled = v / size;
     return scaled / length(scaled);
 }
 
