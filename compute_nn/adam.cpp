@@ -1,15 +1,28 @@
 #include "compute_nn/adam.hpp"
 
+#include <limits>
+
 #include "engine/base/assert.hpp"
 #include "kernels.gen.hpp"
 
 namespace strandlight {
+
+namespace {
+
+constexpr float kAnyFinite = std::numeric_limits<float>::max();
+
+} // namespace
 
 void addAdamPass(RenderGraph& graph, ParameterIds& parameters, const AdamSettings& settings,
                  std::uint32_t step)
 {
     STRANDLIGHT_ASSERT(step > 0);
     const std::uint32_t count = std::uint32_t(graph.desc(parameters.values).bytes / 4);
+    // What the step would spread: a poisoned parameter may hide behind a clamp on its way to the
+    // gradient, a poisoned moment never reaches one.
+    parameters.checkFinite(graph, "parameters", parameters.values, 0, count, kAnyFinite);
+    parameters.checkFinite(graph, "moment 1", parameters.moment1, 0, count, kAnyFinite);
+    parameters.checkFinite(graph, "moment 2", parameters.moment2, 0, count, kAnyFinite);
     parameters.checkFinite(graph, "gradient", parameters.gradient, 0, count, kLargestGradient);
 
     const AdamStep now = adamStepConstants(settings, step);

@@ -1,5 +1,6 @@
 #include "compute_nn/encoder.hpp"
 
+#include <limits>
 #include <string>
 
 #include "compute_nn/activation.hpp"
@@ -70,6 +71,11 @@ EncoderStep addEncoderTrainingStep(RenderGraph& graph, const EncoderDesc& net,
         .images = image.desc.n, .lobes = net.lobes, .directions = net.imageSize * net.imageSize};
     parameters.clearGradients(graph);
     parameters.checkFinite(graph, "light-field image", image);
+    constexpr float kAnyFinite = std::numeric_limits<float>::max();
+    parameters.checkFinite(graph, "directions", directions, 0, 3 * mixture.directions, kAnyFinite);
+    if (training.weights)
+        parameters.checkFinite(graph, "loss weights", training.weights->buffer, 0,
+                               training.weights->count, kAnyFinite);
 
     const EncoderValues values = encoderForward(graph, net, parameters, image);
     const TensorId lobes = addSgDecodePass(graph, mixture, values.raw);

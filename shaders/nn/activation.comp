@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push { ElementPush push; };
 float forward(float x)
 {
     if (KIND == 1u)
-        return x > 0.0 ? x : 0.0 * x;
+        return x > 0.0 || isnan(x) ? x : 0.0; // 0 * x would do, but compilers make it 0
     if (KIND == 2u)
         return x > 0.0 ? x : push.slope * x;
     if (KIND == 3u)

@@ -36,9 +36,15 @@ void main()
         float value = difference * difference;
         float derivative = 2.0 * difference;
         if (KIND == 1u) {
-            float weight = 1.0 / (p * p + kRelativeLossFloor);
-            value *= weight;
-            derivative *= weight;
+            if (abs(p) > 1e15) { // its square would overflow, and the floor is nothing beside it
+                float ratio = difference / p;
+                value = ratio * ratio;
+                derivative = 2.0 * ratio / p;
+            } else {
+                float weight = 1.0 / (p * p + kRelativeLossFloor);
+                value *= weight;
+                derivative *= weight;
+            }
         } else if (KIND == 2u) {
             float q = p < 0.0 ? 0.0 : p;
             float distance = nnLog1p(q) - nnLog1p(t < 0.0 ? 0.0 : t);

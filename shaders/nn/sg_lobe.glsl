@@ -19,6 +19,10 @@ float rawAxisLength(vec3 raw)
 
 vec3 decodeAxis(vec3 raw, float rawLength)
 {
+    if (rawLength > 1e38) { // which may be infinite for finite components
+        vec3 scaled = raw * 1e-20;
+        return scaled / length(scaled);
+    }
     return rawLength == 0.0 ? vec3(0.0, 0.0, 1.0) : raw / rawLength;
 }
 

@@ -17,7 +17,7 @@ layout(binding = 4, rgba32f) readonly uniform imageBuffer before;    // [lobe * 
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer after;    // the same
 layout(binding = 6, rgba32f) uniform imageBuffer moments1;           // the same
 layout(binding = 7, rgba32f) uniform imageBuffer moments2;           // [lobe, texel]
-layout(binding = 8, scalar) buffer Counters { uint skippedSteps; };  // lobes whose gradient was not finite
+layout(binding = 8, scalar) buffer Counters { uint skippedSteps; };  // lobes whose gradient, moments or values were not finite
 
 layout(push_constant, scalar) uniform Push { SgFitUpdatePush push; };
 
@@ -70,13 +70,15 @@ void main()
     // Adam, one second moment per group.
     vec3 squared = vec3(dot(dShape.xyz, dShape.xyz) * 0.5, // two degrees of freedom
                         dShape.w * dShape.w, dot(dAmplitude, dAmplitude) * (1.0 / 3.0));
-    if (isFinite(squared.x + squared.y + squared.z)) {
-        int group = int(lobe * push.texelCount + texel);
-        vec3 v = kSgFitBeta2 * imageLoad(moments2, group).xyz + (1.0 - kSgFitBeta2) * squared;
+    int group = int(lobe * push.texelCount + texel);
+    vec3 v = kSgFitBeta2 * imageLoad(moments2, group).xyz + (1.0 - kSgFitBeta2) * squared;
+    vec4 mShape = kSgFitBeta1 * imageLoad(moments1, first) + (1.0 - kSgFitBeta1) * dShape;
+    vec3 mAmplitude = kSgFitBeta1 * imageLoad(moments1, second).xyz + (1.0 - kSgFitBeta1) * dAmplitude;
+    // Also what the step starts from: max() and clamp() below would hide a NaN.
+    float all = dot(v, vec3(1.0)) + dot(abs(mShape) + abs(shape), vec4(1.0)) + dot(abs(mAmplitude) + abs(amplitude), vec3(1.0));
+    if (isFinite(all)) {
         imageStore(moments2, group, vec4(v, 0.0));
-        vec4 mShape = kSgFitBeta1 * imageLoad(moments1, first) + (1.0 - kSgFitBeta1) * dShape;
         imageStore(moments1, first, mShape);
-        vec3 mAmplitude = kSgFitBeta1 * imageLoad(moments1, second).xyz + (1.0 - kSgFitBeta1) * dAmplitude;
         imageStore(moments1, second, vec4(mAmplitude, 0.0));
 
         vec3 rate = push.learningRate * push.inverseCorrection1 / (sqrt(v * push.inverseCorrection2) + kSgFitAdamEpsilon);
