@@ -15,5 +15,6 @@ Command addReport(CLI::App& parent);
 Command addNnCheck(CLI::App& parent);
 Command addHair(CLI::App& parent);
 Command addBench(CLI::App& parent);
+Command addStress(CLI::App& parent);
 
 } // namespace strandlight::cli

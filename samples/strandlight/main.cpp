@@ -40,9 +40,9 @@ int run(int argc, char** argv)
     app.require_subcommand(1);
     app.footer(std::string("Examples:\n") + kExamples);
     const cli::Command commands[] = {
-        cli::addInfo(app),    cli::addBake(app), cli::addRender(app), cli::addReference(app),
-        cli::addCompare(app), cli::addFits(app), cli::addReport(app), cli::addNnCheck(app),
-        cli::addHair(app),    cli::addBench(app)};
+        cli::addInfo(app),    cli::addBake(app),  cli::addRender(app), cli::addReference(app),
+        cli::addCompare(app), cli::addFits(app),  cli::addReport(app), cli::addNnCheck(app),
+        cli::addHair(app),    cli::addBench(app), cli::addStress(app)};
     // Of an unknown command CLI11 would only say that a subcommand is missing.
     const auto isNamed = [&](const CLI::App* known) { return known->get_name() == argv[1]; };
     if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(isNamed).empty())
