@@ -2,6 +2,7 @@
 // is.
 #pragma once
 
+#include "compute_nn/conv_desc.hpp"
 #include "compute_nn/tensor.hpp"
 
 namespace strandlight {

@@ -59,7 +59,7 @@ TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDe
 }
 
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
-                       const TensorId& x)
+                       const TensorId& x, const UNetTiles* tiles)
 {
     net.check(x.desc);
     const Activation leaky = Activation::leakyRelu(net.slope);
@@ -74,20 +74,23 @@ UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterI
     // Down.
     if (net.head > 0)
         written(f[0], conv2dForward(graph, "enc0", net.encoder(0), x, parameters.weights("enc0"),
-                                    skipOf(net, f, 0), leaky));
+                                    skipOf(net, f, 0), leaky, tiles ? &tiles->skip[0] : nullptr));
     for (std::uint32_t l = 1; l <= net.levels(); ++l) {
         const std::string name = layerName("enc", l);
         written(f[l], conv2dForward(graph, name, net.encoder(l), skipOf(net, f, l - 1),
-                                    parameters.weights(name), skipOf(net, f, l), leaky));
+                                    parameters.weights(name), skipOf(net, f, l), leaky,
+                                    tiles ? &tiles->skip[l] : nullptr));
     }
     // Up.
     for (std::uint32_t l = net.levels(); l-- > 0;) {
         const std::string name = layerName("dec", l);
         written(f[l], convTranspose2dForward(graph, name, net.decoder(l), f[l + 1],
-                                             parameters.weights(name), upOf(net, f, l), leaky));
+                                             parameters.weights(name), upOf(net, f, l), leaky,
+                                             tiles ? &tiles->up[l] : nullptr));
     }
     v.y = createTensor(graph, "y", net.last().output(f[0].desc));
-    v.y = conv2dForward(graph, "out", net.last(), f[0], parameters.weights("out"), v.y);
+    v.y = conv2dForward(graph, "out", net.last(), f[0], parameters.weights("out"), v.y, {},
+                        tiles ? &tiles->y : nullptr);
     return v;
 }
 

@@ -9,6 +9,7 @@
 #include "compute_nn/loss.hpp"
 #include "compute_nn/network_shapes.hpp"
 #include "compute_nn/parameters.hpp"
+#include "compute_nn/unet_tiles.hpp"
 
 namespace strandlight {
 
@@ -26,9 +27,10 @@ struct UNetValues
 TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x);
 
 // x [N,in,H,W] -> y [N,out,H,W]. Any tensor may be x; without a head, one that createUNetInput did
-// not make is copied once. Throws Error for shapes that do not fit.
+// not make is copied once. With tiles (N = 1, x from createUNetInput) every layer computes these
+// alone, and what they do not reach of y is undefined. Throws Error for shapes that do not fit.
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
-                       const TensorId& x);
+                       const TensorId& x, const UNetTiles* tiles = nullptr);
 
 // dY [N,out,H,W] -> accumulates into the parameters' gradients. x gets none.
 void unetBackward(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,

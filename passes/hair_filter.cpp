@@ -1,6 +1,7 @@
 #include "passes/hair_filter.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "compute_nn/unet.hpp"
@@ -16,16 +17,16 @@ static_assert(sizeof(gpu::HairCompositePush) == 36);
 // as much again for the convolutions going down, at three levels and padded to 8.
 constexpr std::uint32_t kMarginRows = 16;
 
-// Rows [firstRow, endRow) of the picture by a tensor of rows [tensorRow, tensorEnd).
 struct Band
 {
-    std::uint32_t firstRow, endRow, tensorRow, tensorEnd;
+    TileRows rows;
+    std::uint32_t tensorEnd;
 };
 
 Band bandAt(std::uint32_t firstRow, std::uint32_t rows, std::uint32_t paddedHeight)
 {
     const std::uint32_t end = std::min(firstRow + rows, paddedHeight);
-    return {firstRow, end, firstRow - std::min(firstRow, kMarginRows),
+    return {{firstRow - std::min(firstRow, kMarginRows), firstRow, end},
             std::min(end + kMarginRows, paddedHeight)};
 }
 
@@ -42,25 +43,42 @@ std::uint32_t chooseBandRows(const RenderGraph& graph, const UNetDesc& net,
     if (most >= picture.h)
         return picture.h;
     const std::uint32_t bands = (picture.h + most - 2 * kMarginRows - 1) / (most - 2 * kMarginRows);
-    return (picture.h / bands + 8) / 8 * 8;
+    return (picture.h + 8 * bands - 1) / (8 * bands) * 8;
+}
+
+TouchedBlocks addTouchedPass(RenderGraph& graph, ImageId exact)
+{
+    const glm::uvec3 size = graph.extent(exact);
+    TouchedBlocks touched{{}, (size.x + 7) / 8, (size.y + 7) / 8};
+    PassBuilder pass = graph.addComputePass("hair touched");
+    pass.sample(exact);
+    touched.buffer = pass.write(graph.createBuffer(
+        "touched blocks", std::uint64_t(touched.across) * touched.down * sizeof(std::uint32_t)));
+    const gpu::HairTouchedPush push{size.x, size.y, touched.across, touched.down};
+    pass.dispatch(kernels::hair_touched, {touched.across, touched.down, 1}, push,
+                  {Binding(exact, Filter::Nearest), touched.buffer});
+    return touched;
 }
 
 void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const TensorId& y,
-                      const Band& band, HairComposite& over)
+                      const TileRows& rows, const TileList* tiles, HairComposite& over)
 {
     const glm::uvec3 size = graph.extent(input.exact);
     PassBuilder pass = graph.addComputePass("hair composite");
     const BufferId answer = pass.read(y.buffer);
+    const BufferId list = tiles ? pass.read(tiles->tiles) : answer;
     const ImageId mean = pass.read(input.mean);
-    pass.sample(input.exact);
+    const Binding exact(pass.sample(input.exact), Filter::Nearest);
     over.filtered = pass.write(over.filtered);
     over.radiance = pass.write(over.radiance);
-    const std::uint32_t endRow = std::min(band.endRow, size.y);
-    const gpu::HairCompositePush push{y.view(),      size.x, size.y,
-                                      band.firstRow, endRow, band.tensorRow};
-    pass.dispatch(
-        kernels::hair_composite, {size.x, endRow - band.firstRow, 1}, push,
-        {answer, mean, Binding(input.exact, Filter::Nearest), over.filtered, over.radiance});
+    const gpu::HairCompositePush push{
+        y.view(), size.x, size.y, rows.firstRow, std::min(rows.endRow, size.y), rows.tensorRow};
+    if (tiles)
+        pass.dispatchIndirect(kernels::hair_composite, tiles->arguments, kPictureTiles, push,
+                              {answer, mean, exact, over.filtered, over.radiance, list}, {1});
+    else
+        pass.dispatch(kernels::hair_composite, {y.desc.w, y.desc.h, 1}, push,
+                      {answer, mean, exact, over.filtered, over.radiance, list}, {0});
 }
 
 } // namespace
@@ -78,14 +96,21 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
     const TensorDesc picture = hairInputDesc(size.x, size.y);
     const std::uint32_t rows = chooseBandRows(graph, net, picture, settings);
     HairComposite result = over;
+    TouchedBlocks touched;
+    if (settings.skipTiles)
+        touched = addTouchedPass(graph, input.exact);
     for (std::uint32_t first = 0; first < picture.h; first += rows) {
         const Band band = bandAt(first, rows, picture.h);
         TensorDesc desc = picture;
-        desc.h = band.tensorEnd - band.tensorRow;
+        desc.h = band.tensorEnd - band.rows.tensorRow;
+        std::optional<UNetTiles> tiles;
+        if (settings.skipTiles)
+            tiles = addUNetTilesPass(graph, net, desc, touched, band.rows);
         const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.depth,
-                                            createUNetInput(graph, net, desc), band.tensorRow);
-        const UNetValues values = unetForward(graph, net, parameters, x);
-        addCompositePass(graph, input, values.y, band, result);
+                                            createUNetInput(graph, net, desc), band.rows.tensorRow,
+                                            tiles ? &tiles->input : nullptr);
+        const UNetValues values = unetForward(graph, net, parameters, x, tiles ? &*tiles : nullptr);
+        addCompositePass(graph, input, values.y, band.rows, tiles ? &tiles->y : nullptr, result);
     }
     return result;
 }

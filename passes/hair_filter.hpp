@@ -24,6 +24,8 @@ struct HairFilterSettings
     // Of the picture, filtered at once; a multiple of 8, 0: as many as the device can bind. What
     // a band's pixels see of its neighbours is computed twice, so bands change no bit.
     std::uint32_t bandRows = 0;
+    // Compute only what pixels with hair need, in every layer. Changes no bit either.
+    bool skipTiles = true;
 };
 
 struct HairComposite

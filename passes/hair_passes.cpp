@@ -249,7 +249,8 @@ TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height)
 }
 
 TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          const HairDepthScale& depth, const TensorId& x, std::uint32_t firstRow)
+                          const HairDepthScale& depth, const TensorId& x, std::uint32_t firstRow,
+                          const TileList* tiles)
 {
     if (!samples.features.valid() || !samples.shape.valid())
         throw Error("hair: the network's input needs strands drawn with features");
@@ -266,10 +267,19 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     const BufferId planes = pass.write(x.buffer);
     const gpu::HairInputPush push{x.view(), firstRow,     extent.x,
                                   extent.y, depth.offset, depth.scale};
-    pass.dispatch(kernels::hair_input, {x.desc.w, x.desc.h, 1}, push,
-                  {Binding(samples.features, Filter::Nearest),
-                   Binding(samples.shape, Filter::Nearest), Binding(exact, Filter::Nearest),
-                   planes});
+    const Binding features(samples.features, Filter::Nearest);
+    const Binding shape(samples.shape, Filter::Nearest), transmittance(exact, Filter::Nearest);
+    if (tiles) {
+        const BufferId list = pass.read(tiles->tiles);
+        pass.dispatchIndirect(kernels::hair_input, tiles->arguments, kPictureTiles, push,
+                              {features, shape, transmittance, planes, list}, {1});
+    } else {
+        const std::uint32_t none[] = {0};
+        const BufferId list =
+            pass.read(graph.uploadBuffer("no tiles", std::span<const std::uint32_t>(none)));
+        pass.dispatch(kernels::hair_input, {x.desc.w, x.desc.h, 1}, push,
+                      {features, shape, transmittance, planes, list}, {0});
+    }
     return x.as(planes);
 }
 

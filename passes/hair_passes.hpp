@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "compute_nn/tensor.hpp"
+#include "compute_nn/tile_list.hpp"
 #include "engine/graph/render_graph.hpp"
 #include "passes/hair_strands.hpp"
 
@@ -68,14 +68,17 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
                             float weight, std::uint32_t count = 4);
 
+// Record of a TileList's arguments for workgroups of 8x8 pixels (shaders/nn/tiles.glsl).
+inline constexpr std::uint64_t kPictureTiles = (gpu::kConvTileWidth / 8 - 1) * 12;
+
 // [1,25,H,W] of the network's input: the picture's sides, rounded up to multiples of 8.
 TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height);
 
 // Writes what a network reads into x, planes as kHairInputPlanes says; x is of hairInputDesc, or
-// holds the rows of it from `firstRow` on, and may be a channel range (createUNetInput). Throws
-// Error when x is none of these, or when the samples came without features.
+// holds the rows of it from `firstRow` on, and may be a channel range (createUNetInput). With tiles
+// only in those. Throws Error when x is none of these, or when the samples came without features.
 TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
                           const HairDepthScale& depth, const TensorId& x,
-                          std::uint32_t firstRow = 0);
+                          std::uint32_t firstRow = 0, const TileList* tiles = nullptr);
 
 } // namespace strandlight

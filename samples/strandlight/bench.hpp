@@ -58,6 +58,7 @@ private:
 
 // Subcommands, one source file each.
 Command addBenchKernels(CLI::App& bench);
+Command addBenchHairFilter(CLI::App& bench);
 Command addBenchGi(CLI::App& bench);
 Command addBenchAll(CLI::App& bench);
 Command addBenchPage(CLI::App& bench);

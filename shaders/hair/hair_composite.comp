@@ -6,13 +6,17 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shared/hair_types.h"
 #include "nn/filter_weights.glsl"
+#include "nn/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint TILES = 0; // 1: over a list of tiles
+
 layout(binding = 0, r32f) uniform readonly imageBuffer y;          // [12,H,W]
 layout(binding = 1, rgba32f) uniform readonly image2D samples;     // mean of four: premultiplied radiance
 layout(binding = 2) uniform sampler2D exact;                       // transmittance
 layout(binding = 3, rgba32f) uniform writeonly image2D filtered;   // premultiplied radiance, 1 - transmittance
 layout(binding = 4, rgba32f) uniform image2D radiance;             // background, then hair over it
+layout(binding = 5, r32ui) uniform readonly uimageBuffer tiles;
 layout(push_constant, scalar) uniform Push { HairCompositePush push; };
 
 float luminance(vec3 c)
@@ -22,8 +26,9 @@ float luminance(vec3 c)
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.x, gl_GlobalInvocationID.y + push.firstRow);
-    if (pixel.x >= int(push.width) || pixel.y >= int(push.endRow)) {
+    ivec2 inTensor = TILES == 0u ? ivec2(gl_GlobalInvocationID.xy) : tilePixel(imageLoad(tiles, int(gl_WorkGroupID.x)).x);
+    ivec2 pixel = ivec2(inTensor.x, inTensor.y + int(push.tensorRow));
+    if (pixel.x >= int(push.width) || pixel.y < int(push.firstRow) || pixel.y >= int(push.endRow)) {
         return;
     }
     float exactHere = texelFetch(exact, pixel, 0).x;
@@ -31,7 +36,7 @@ void main()
         return;
     }
     int plane = int(push.y.width * push.y.height);
-    int at = int(push.y.offset) + (pixel.y - int(push.tensorRow)) * int(push.y.width) + pixel.x;
+    int at = int(push.y.offset) + inTensor.y * int(push.y.width) + inTensor.x;
     float brightness = nnExp(imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
     brightness = brightness < 0.0 ? 0.0 : brightness;
     float transmittance = exactHere + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;

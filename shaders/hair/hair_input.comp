@@ -5,17 +5,21 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shared/hair_types.h"
 #include "nn/nn_math.glsl"
+#include "nn/tiles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint TILES = 0; // 1: over a list of tiles
+
 layout(binding = 0) uniform sampler2DMS features; // brightness, illumination, transparency, depth
 layout(binding = 1) uniform sampler2DMS shape;    // tangent
 layout(binding = 2) uniform sampler2D exact;      // transmittance
 layout(binding = 3, scalar) writeonly buffer Planes { float planes[]; };
+layout(binding = 4, r32ui) uniform readonly uimageBuffer tiles;
 layout(push_constant, scalar) uniform Push { HairInputPush push; };
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = TILES == 0u ? ivec2(gl_GlobalInvocationID.xy) : tilePixel(imageLoad(tiles, int(gl_WorkGroupID.x)).x);
     if (pixel.x >= int(push.planes.width) || pixel.y >= int(push.planes.height)) {
         return;
     }

@@ -100,6 +100,14 @@ struct HairInputPush
     float depthScale;
 };
 
+struct HairTouchedPush
+{
+    uint width; // of the picture
+    uint height;
+    uint blocksAcross;
+    uint blocksDown;
+};
+
 // Planes of the network's output, [12, height, width]: ln(1 + brightness), illumination, what the transmittance is above
 // the exact one, nine logits of a kernel.
 STRANDLIGHT_CONST(uint) kHairOutputs = 12u;

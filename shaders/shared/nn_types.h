@@ -138,6 +138,21 @@ struct KernelFilterPush
     TensorView result;
 };
 
+// tile_list.comp: TileReach, TouchedBlocks and TileRows of compute_nn/unet_tiles.hpp.
+struct TileListPush
+{
+    uint tilesAcross;
+    uint tilesDown;
+    uint level;
+    uint before;
+    uint after;
+    uint blocksAcross;
+    uint blocksDown;
+    uint tensorRow;
+    uint firstRow;
+    uint endRow;
+};
+
 struct LossPush
 {
     uint count;

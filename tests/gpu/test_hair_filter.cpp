@@ -44,22 +44,23 @@ struct Filtered
     std::vector<float> planes; // whole picture, dense
 };
 
+// A picture of the background's size.
 Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
-                const CpuImage& background)
+                const CpuImage& background, const HairStrands& hair = someStrands())
 {
-    const HairStrands hair = someStrands();
-    const Camera camera = pixelCamera(kHeight);
-    HairRenderSettings render = plainSettings(kHeight);
-    render.width = kWidth;
+    const std::uint32_t width = background.width, height = background.height;
+    const Camera camera = pixelCamera(height);
+    HairRenderSettings render = plainSettings(height);
+    render.width = width;
     const std::vector<gpu::HairLight> lights = hairLights(hair, nullptr, render);
     HairBuffers buffers = uploadHair(context(), hair, nullptr, lights, 1);
     HairView view;
     view.viewProjection =
-        cameraViewProjection(camera, kWidth, kHeight, hairDepthRange(hair, nullptr, camera));
+        cameraViewProjection(camera, width, height, hairDepthRange(hair, nullptr, camera));
     view.eye = camera.eye;
-    view.width = kWidth;
-    view.height = kHeight;
-    const ImageDesc desc{kWidth, kHeight, 1, Format::RGBA32F, 1};
+    view.width = width;
+    view.height = height;
+    const ImageDesc desc{width, height, 1, Format::RGBA32F, 1};
     Image mean(context(), desc, "mean"), behind(context(), desc, "behind");
     Image filtered(context(), desc, "filtered"), radiance(context(), desc, "radiance");
     radiance.upload(background);
@@ -78,7 +79,7 @@ Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
     addHairFilterPasses(graph, network.net, weights, input, over, settings);
     const TensorId planes =
         addHairInputPass(graph, input.samples, input.exact, input.depth,
-                         createTensor(graph, "planes", hairInputDesc(kWidth, kHeight)));
+                         createTensor(graph, "planes", hairInputDesc(width, height)));
     graph.output(input.exact);
     graph.output(planes.buffer);
     graph.run();
@@ -93,11 +94,11 @@ bool sameBytes(const CpuImage& a, const CpuImage& b)
            std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec4)) == 0;
 }
 
-CpuImage gradient()
+CpuImage gradient(std::uint32_t width = kWidth, std::uint32_t height = kHeight)
 {
-    CpuImage image(kWidth, kHeight);
-    for (std::uint32_t y = 0; y < kHeight; ++y)
-        for (std::uint32_t x = 0; x < kWidth; ++x)
+    CpuImage image(width, height);
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x)
             image.at(x, y) = {0.1f * float(x), 0.05f * float(y), 0.3f, 1.0f};
     return image;
 }
@@ -174,6 +175,27 @@ TEST_CASE("hair filter: bands of rows give the bits of the whole picture")
         CHECK(sameBytes(bands.radiance, whole.radiance));
         CHECK(sameBytes(bands.filtered, whole.filtered));
     }
+}
+
+TEST_CASE("hair filter: skipping tiles changes no bit, whatever the hair covers")
+{
+    constexpr std::uint32_t kWide = 173,
+                            kTall = 91; // five tiles across at full size, one at the coarsest
+    HairStrands corner, line, everywhere, outside;
+    addStrand(corner, {{-86.0f, 45.0f, 0.0f}, {-83.0f, 41.0f, 0.0f}}, 0.5f);
+    addStrand(line, {{-80.0f, -44.0f, 0.0f}, {80.0f, 44.0f, 0.0f}}, 0.5f);
+    addStrand(everywhere, {{-200.0f, 0.0f, 0.0f}, {200.0f, 0.0f, 0.0f}}, 100.0f);
+    addStrand(outside, {{0.0f, 400.0f, 0.0f}, {10.0f, 410.0f, 0.0f}}, 0.5f);
+    for (const HairStrands& hair : {corner, line, everywhere, outside, someStrands()})
+        for (const std::uint32_t rows : {0u, 32u}) {
+            CAPTURE(rows);
+            HairNetwork network = someNetwork(hairUNet(HairUNetSize::Small));
+            const CpuImage background = gradient(kWide, kTall);
+            const Filtered dense = filter(network, {.skipTiles = false}, background, hair);
+            const Filtered tiles = filter(network, {.bandRows = rows}, background, hair);
+            CHECK(sameBytes(tiles.filtered, dense.filtered));
+            CHECK(sameBytes(tiles.radiance, dense.radiance));
+        }
 }
 
 TEST_CASE("hair filter: a picture by a network, twice the same, and what it refuses")

@@ -1,0 +1,107 @@
+#include "compute_nn/unet_tiles.hpp"
+
+#include <string>
+
+#include "kernels.gen.hpp"
+
+namespace strandlight {
+
+namespace {
+
+constexpr std::uint32_t kLanes = 256; // of tile_list.comp's one workgroup
+
+// A layer that the 3x3 convolution of stride 1 at the same level reads.
+TileReach aroundKernel(const TileReach& reader)
+{
+    return {reader.level, reader.before + (1u << reader.level),
+            reader.after + (1u << reader.level)};
+}
+
+// A layer below a transposed convolution of stride 2: pixel q makes pixels 2 q - padding onward, so
+// [first, end) makes [2 first - padding, 2 end + padding).
+TileReach belowDecoder(const TileReach& reader, std::uint32_t padding)
+{
+    const std::uint32_t wider = padding << reader.level;
+    return {reader.level + 1, reader.before + wider, reader.after + wider};
+}
+
+// A layer above a 3x3 convolution of stride 2, whose output q reads 2 q - 1 to 2 q + 1: [first,
+// end) is read by [first / 2, end / 2 + 1), first and end being even.
+TileReach aboveEncoder(const TileReach& reader)
+{
+    return {reader.level - 1, reader.before, reader.after + (1u << reader.level)};
+}
+
+TileReach widest(const TileReach& a, const TileReach& b)
+{
+    return {a.level, std::max(a.before, b.before), std::max(a.after, b.after)};
+}
+
+void addList(RenderGraph& graph, PassBuilder& pass, const TileReach& reach, const TensorDesc& x,
+             const TouchedBlocks& touched, const TileRows& rows, const std::string& name,
+             TileList& list)
+{
+    const Extent2 grid = tileGrid({1, 1, x.h >> reach.level, x.w >> reach.level});
+    const std::uint32_t tiles = grid.h * grid.w;
+    const std::uint32_t blocks = ((gpu::kConvTileWidth << reach.level) / 8 + 3) *
+                                 ((gpu::kConvTileHeight << reach.level) / 8 + 3);
+    checkTripBudget("tile_list", 2ull * ((tiles + kLanes - 1) / kLanes) * blocks + kLanes);
+    list.tiles = pass.write(graph.createBuffer("tiles " + name, tiles * 4ull));
+    list.arguments =
+        pass.write(graph.createBuffer("tile arguments " + name, gpu::kConvTileBlocks * 12ull));
+    const gpu::TileListPush push{.tilesAcross = grid.w,
+                                 .tilesDown = grid.h,
+                                 .level = reach.level,
+                                 .before = reach.before,
+                                 .after = reach.after,
+                                 .blocksAcross = touched.across,
+                                 .blocksDown = touched.down,
+                                 .tensorRow = rows.tensorRow,
+                                 .firstRow = rows.firstRow,
+                                 .endRow = rows.endRow};
+    pass.dispatch(kernels::tile_list, {kLanes, 1, 1}, push,
+                  {touched.buffer, list.tiles, list.arguments});
+}
+
+} // namespace
+
+UNetReach unetReach(const UNetDesc& net)
+{
+    const std::uint32_t bottom = net.levels();
+    UNetReach reach;
+    reach.up.resize(bottom);
+    reach.skip.resize(bottom + 1);
+    // Up: each layer is read by the one above it alone.
+    reach.up[0] = aroundKernel(reach.y);
+    for (std::uint32_t l = 1; l < bottom; ++l)
+        reach.up[l] = belowDecoder(reach.up[l - 1], net.upKernel / 2 - 1);
+    reach.skip[bottom] = belowDecoder(reach.up[bottom - 1], net.upKernel / 2 - 1);
+    // Down: a skip is read beside `up`, and by the encoder below it.
+    for (std::uint32_t l = bottom; l-- > 0;)
+        reach.skip[l] = widest(reach.up[l], aboveEncoder(reach.skip[l + 1]));
+    reach.input = net.head > 0 ? aroundKernel(reach.skip[0]) : reach.skip[0];
+    return reach;
+}
+
+UNetTiles addUNetTilesPass(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x,
+                           const TouchedBlocks& touched, const TileRows& rows)
+{
+    const UNetReach reach = unetReach(net);
+    UNetTiles tiles;
+    tiles.up.resize(reach.up.size());
+    tiles.skip.resize(reach.skip.size());
+    PassBuilder pass = graph.addComputePass("unet tiles");
+    pass.read(touched.buffer);
+    const auto add = [&](const TileReach& wanted, const std::string& name, TileList& list) {
+        addList(graph, pass, wanted, x, touched, rows, name, list);
+    };
+    add(reach.y, "y", tiles.y);
+    add(reach.input, "input", tiles.input);
+    for (std::size_t l = 0; l < reach.up.size(); ++l)
+        add(reach.up[l], "up " + std::to_string(l), tiles.up[l]);
+    for (std::size_t l = net.head > 0 ? 0 : 1; l < reach.skip.size(); ++l)
+        add(reach.skip[l], "skip " + std::to_string(l), tiles.skip[l]);
+    return tiles;
+}
+
+} // namespace strandlight
