@@ -125,29 +125,26 @@ int run(const Options& o)
     std::vector<Total> totals;
     std::uint32_t rounds = 0;
     bool stopped = false;
-    {
-        Progress progress("stress", std::uint64_t(std::max(o.minutes * 60.0, 1.0)));
-        Progress::setEnabled(false); // of the fits inside
-        for (bool timeLeft = true; timeLeft && !stopped; ++rounds) {
-            StressSettings settings = o.settings;
-            settings.seed += rounds * 1000u; // groups use seeds up to a few hundred above theirs
-            // The long training is done once; later rounds have new fields, but a tenth of the
-            // steps.
-            settings.steps = rounds == 0 ? o.settings.steps : std::max(o.settings.steps / 10, 1u);
-            for (const StressGroup& group : stressGroups()) {
-                if (!o.group.empty() && o.group != group.name)
-                    continue;
-                timeLeft = seconds() < o.minutes * 60.0;
-                stopped = interruptRequested();
-                if (stopped || (!timeLeft && rounds > 0))
-                    break;
-                try {
-                    addUp(totals, group.name, settings.seed, group.run(context, settings));
-                } catch (const Interrupted&) {
-                    stopped = true;
-                }
-                progress.update(std::uint64_t(std::min(seconds(), o.minutes * 60.0)));
+    Progress::setEnabled(false); // of the fits inside: a group is the unit here
+    for (bool timeLeft = true; timeLeft && !stopped; ++rounds) {
+        StressSettings settings = o.settings;
+        settings.seed += rounds * 1000u; // groups use seeds up to a few hundred above theirs
+        // The long training is done once; later rounds have new fields, but a tenth of the steps.
+        settings.steps = rounds == 0 ? o.settings.steps : std::max(o.settings.steps / 10, 1u);
+        for (const StressGroup& group : stressGroups()) {
+            if (!o.group.empty() && o.group != group.name)
+                continue;
+            stopped = stopped || interruptRequested();
+            if (stopped || (!timeLeft && rounds > 0))
+                break;
+            std::fprintf(stderr, "%.0f of %.0f s, round %u: %s\n", seconds(), o.minutes * 60.0,
+                         rounds + 1, group.name);
+            try {
+                addUp(totals, group.name, settings.seed, group.run(context, settings));
+            } catch (const Interrupted&) {
+                stopped = true;
             }
+            timeLeft = seconds() < o.minutes * 60.0;
         }
     }
     print(totals);
