@@ -29,7 +29,7 @@ struct GiChoice
     std::uint32_t atlas = BakeSettings{}.atlasResolution;
     std::uint32_t lightfield = BakeSettings{}.lightfieldSize;
     std::uint32_t samples = BakeSettings{}.samplesPerDirection;
-    GiStorage storage = GiStorage::Fp16;
+    GiStorage storage = GiStorage::Packed;
     SpecularModel specular = RenderSettings{}.specular;
     DiffuseModel diffuse = RenderSettings{}.diffuse;
 };

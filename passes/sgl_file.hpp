@@ -32,7 +32,7 @@ struct SglSaveReport
 // Throws Error for a bake that is not consistent or not finite (see chooseCoding), FileError when
 // writing fails; the old file is then untouched.
 SglSaveReport saveSgl(const std::filesystem::path& path, const SgBake& bake,
-                      SglStorage storage = SglStorage::Fp16);
+                      SglStorage storage = SglStorage::Packed);
 
 // Throws FileError, naming the chunk, for a file that is cut, altered, of another version or
 // inconsistent.

@@ -20,7 +20,7 @@ struct Options
     SceneOptions scene;
     BakeSettings settings;
     std::string fit = toString(BakeSettings{}.fit);
-    std::string storage = "fp16";
+    std::string storage = "packed";
     std::string output;
     std::string json;
 };
@@ -42,7 +42,7 @@ void addSettings(CLI::App& app, Options& o)
     addNumber(app, "--spp", s.samplesPerDirection, "Paths per direction", 1u, 65536u);
     addNumber(app, "--bounces", s.bounces, "Reflections on a path", 0u, 64u);
     addNumber(app, "--seed", s.seed, "Of the random numbers", 0u, 0xffffffffu);
-    app.add_option("--storage", o.storage, "fp16: 12 bytes per lobe; packed: 8")
+    app.add_option("--storage", o.storage, "packed: 8 bytes per lobe; fp16: 12")
         ->type_name("FORM")
         ->capture_default_str()
         ->check(CLI::IsMember({"fp16", "packed"}));
