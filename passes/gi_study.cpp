@@ -69,11 +69,11 @@ void addShading(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 GiSweep smallGiSweep()
 {
     GiSweep sweep;
-    sweep.base.atlas = 40;
+    sweep.base.atlas = 56; // cornell_lambert has 10 charts at 40 texels a side, 69 at 48
     sweep.lobes = {2, 4, 7, 8, 12, 16};
-    sweep.atlases = {24, 32, 40, 56};
-    sweep.lightfields = {8, 12, 16, 24};
-    sweep.samples = {1, 2, 4, 8, 16};
+    sweep.atlases = {48, 56, 72};
+    sweep.lightfields = {8, 12, 16};
+    sweep.samples = {1, 2, 4, 8};
     return sweep;
 }
 

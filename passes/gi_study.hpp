@@ -21,7 +21,7 @@ struct GiSweep
     std::vector<std::uint32_t> samples{1, 2, 4, 8, 16, 32};
 };
 
-GiSweep smallGiSweep();             // of minutes, about an atlas of 40
+GiSweep smallGiSweep();             // of minutes, about an atlas of 56
 GiMeasureSettings smallGiMeasure(); // the pictures and truths that go with it
 
 struct GiStudy
