@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "compute_nn/sum.hpp"
 #include "engine/base/assert.hpp"
 #include "kernels.gen.hpp"
 
@@ -15,11 +16,10 @@ LossResult addLossPass(RenderGraph& graph, std::string_view name, LossKind kind,
     STRANDLIGHT_ASSERT(prediction.whole() && target.whole());
     STRANDLIGHT_ASSERT(prediction.desc == target.desc);
     const std::uint32_t count = std::uint32_t(prediction.desc.elements());
-    // Both stages loop: the chunk grows only when there would be too many chunks.
+    // Few enough chunks for one invocation to add them.
     const std::uint32_t chunk = std::max(64u, (count + 16383) / 16384);
     const std::uint32_t chunks = (count + chunk - 1) / chunk;
     checkTripBudget("loss", chunk);
-    checkTripBudget("loss_sum", chunks);
 
     const std::string title(name);
     TensorId gradient = createTensor(graph, title + " gradient", prediction.desc);
@@ -29,13 +29,11 @@ LossResult addLossPass(RenderGraph& graph, std::string_view name, LossKind kind,
     const BufferId w = weights ? pass.read(weights->buffer) : p;
     const BufferId dP = pass.write(gradient.buffer);
     const BufferId sums = pass.write(graph.createBuffer(title + " chunks", chunks * 4));
-    const BufferId value = pass.write(graph.createBuffer(title + " value", 4));
     const gpu::LossPush push{count, chunk, weights ? weights->stride : 1,
                              weights ? weights->count : 1, float(1.0 / count)};
     pass.dispatch(kernels::loss, {chunks, 1, 1}, push, {p, t, w, dP, sums},
                   {std::uint32_t(kind), weights ? 1u : 0u});
-    pass.dispatch(kernels::loss_sum, {1, 1, 1}, push, {sums, value});
-    return {value, gradient.as(dP)};
+    return {addSumPass(graph, title + " sum", sums, chunks, push.scale), gradient.as(dP)};
 }
 
 } // namespace strandlight

@@ -10,8 +10,9 @@ namespace strandlight {
 
 namespace {
 
-// Directions of one invocation of sg_mixture.comp, and of eight neighbours.
-constexpr std::uint32_t kDirectionTile = 4;
+// Lobes that one invocation keeps in registers, measured on lavapipe: more do not pay.
+constexpr std::uint32_t kForwardLobes = 8;
+constexpr std::uint32_t kBackwardLobes = 4;
 // Lobe evaluations of one dispatch: about 30 ms on two lavapipe threads.
 constexpr std::uint64_t kDispatchWork = 8'000'000;
 
@@ -31,6 +32,21 @@ void checkTensor(const char* what, const TensorId& tensor, std::uint64_t element
     if (!tensor.whole() || tensor.desc.elements() != elements)
         throw Error(std::string("sg mixture: ") + what + " " + shapeText(tensor.desc) +
                     " has not " + std::to_string(elements) + " elements");
+}
+
+// Most of 1..limit that divides the lobes.
+std::uint32_t lobeTile(std::uint32_t lobes, std::uint32_t limit)
+{
+    std::uint32_t tile = std::min(lobes, limit);
+    while (lobes % tile != 0)
+        --tile;
+    return tile;
+}
+
+// Directions at once: four when they and their radiance are whole texels of four floats.
+std::uint32_t directionTile(const SgMixtureDesc& desc)
+{
+    return desc.planar && desc.directions % 4 == 0 ? 4 : 1;
 }
 
 std::uint32_t imagesPerDispatch(const SgMixtureDesc& desc)
@@ -58,20 +74,21 @@ TensorId sgMixtureForward(RenderGraph& graph, const SgMixtureDesc& desc, const T
 {
     checkTensor("lobes", lobes, desc.raw().elements());
     checkTensor("radiance", radiance, desc.radianceElements());
-    checkTripBudget("sg_mixture", desc.lobes);
+    const std::uint32_t lobesAtOnce = lobeTile(desc.lobes, kForwardLobes);
+    const std::uint32_t blocks = desc.lobes / lobesAtOnce;
+    checkTripBudget("sg_mixture", gpu::kSgMixtureSlice * (blocks + 1));
     PassBuilder pass = graph.addComputePass("sg mixture");
     const BufferId from = pass.read(lobes.buffer);
     const BufferId along = pass.read(directions);
     const BufferId to = pass.write(radiance.buffer);
     gpu::SgMixturePush push = pushOf(desc);
-    const std::uint32_t slice = imagesPerDispatch(desc);
-    const std::uint32_t tile = kDirectionTile * 8;
-    const bool lanes = graph.context().subgroupSize() >= 8;
-    for (; push.firstImage < desc.images; push.firstImage += slice)
+    const std::uint32_t images = imagesPerDispatch(desc);
+    const std::uint32_t slices =
+        (desc.directions + gpu::kSgMixtureSlice - 1) / gpu::kSgMixtureSlice;
+    for (; push.firstImage < desc.images; push.firstImage += images)
         pass.dispatch(kernels::sg_mixture,
-                      {(desc.directions + tile - 1) / tile * 8,
-                       std::min(slice, desc.images - push.firstImage), 1},
-                      push, {from, along, to}, {lanes ? 1u : 0u});
+                      {std::min(images, desc.images - push.firstImage), slices, 1}, push,
+                      {from, along, along, to, to}, {lobesAtOnce, blocks, directionTile(desc)});
     return radiance.as(to);
 }
 
@@ -81,19 +98,21 @@ TensorId sgMixtureBackward(RenderGraph& graph, const SgMixtureDesc& desc, const 
     checkTensor("raw", raw, desc.raw().elements());
     checkTensor("radiance gradient", dRadiance, desc.radianceElements());
     checkTensor("raw gradient", dRaw, desc.raw().elements());
-    checkTripBudget("sg_mixture_backward", desc.directions);
+    const std::uint32_t lobesAtOnce = lobeTile(desc.lobes, kBackwardLobes);
+    const std::uint32_t tile = directionTile(desc);
+    checkTripBudget("sg_mixture_backward", desc.directions / tile);
     PassBuilder pass = graph.addComputePass("sg mixture backward");
     const BufferId values = pass.read(raw.buffer);
     const BufferId along = pass.read(directions);
     const BufferId from = pass.read(dRadiance.buffer);
     const BufferId to = pass.write(dRaw.buffer);
     gpu::SgMixturePush push = pushOf(desc);
-    const std::uint32_t slice = imagesPerDispatch(desc);
-    const bool lanes = graph.context().subgroupSize() >= 8;
-    for (; push.firstImage < desc.images; push.firstImage += slice)
-        pass.dispatch(kernels::sg_mixture_backward,
-                      {std::min(slice, desc.images - push.firstImage) * desc.lobes, 1, 1}, push,
-                      {values, along, from, to}, {lanes && desc.lobes % 8 == 0 ? 1u : 0u});
+    const std::uint32_t images = imagesPerDispatch(desc);
+    for (; push.firstImage < desc.images; push.firstImage += images)
+        pass.dispatch(
+            kernels::sg_mixture_backward,
+            {std::min(images, desc.images - push.firstImage), desc.lobes / lobesAtOnce, 1}, push,
+            {values, along, along, from, from, to}, {lobesAtOnce, tile});
     return dRaw.as(to);
 }
 

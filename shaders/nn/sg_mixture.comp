@@ -1,73 +1,76 @@
-// radiance[n,d] = sum over lobes of amplitude exp(-sharpness/2 |d - axis|^2), for P directions of an image at once.
-// With SHUFFLE, eight lanes load eight lobes and hand them round: a workgroup is eight lanes of one image.
+// radiance[n,d] = sum over lobes of amplitude exp(-sharpness/2 |d - axis|^2).
+// A lane is an image: its lobes stay with it, directions come by, nothing crosses lanes. Four directions at once make the
+// stores whole vectors, which a CPU device writes four times faster than single floats.
 // Wang et al. All-Frequency Rendering of Dynamic, Spatially-Varying Reflectance. 2009
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 
 #include "nn/sg_lobe.glsl"
 
 layout(local_size_x = 8) in;
-layout(constant_id = 0) const uint SHUFFLE = 0;
+layout(constant_id = 0) const uint LOBES = 1;  // of one block, in registers
+layout(constant_id = 1) const uint BLOCKS = 1; // of an image
+layout(constant_id = 2) const uint TILE = 1;   // 4: planar radiance, directions a multiple of four; else 1
 layout(binding = 0, r32f) uniform readonly imageBuffer lobes;      // [N,L,7] decoded
 layout(binding = 1, r32f) uniform readonly imageBuffer directions; // [N,D,3] or [D,3], unit
-layout(binding = 2, scalar) writeonly buffer Radiance { float radiance[]; };
+layout(binding = 2, rgba32f) uniform readonly imageBuffer directionQuads;
+layout(binding = 3, scalar) writeonly buffer Radiance { float radiance[]; };
+layout(binding = 4, scalar) writeonly buffer RadianceQuads { vec4 radianceQuads[]; };
 layout(push_constant, scalar) uniform Push { SgMixturePush push; };
 
-const uint P = 4;
-const uint kLanes = 8;
+#include "nn/sg_directions.glsl"
+
+vec3 axis[LOBES];
+float falloff[LOBES]; // -sharpness/2, for powers of two
+vec3 amplitude[LOBES];
+vec3 sum[TILE];
+
+void loadLobes(uint first)
+{
+    [[unroll]] for (uint l = 0; l < LOBES; ++l) {
+        int at = int(first + l) * 7;
+        axis[l] = vec3(imageLoad(lobes, at).x, imageLoad(lobes, at + 1).x, imageLoad(lobes, at + 2).x);
+        falloff[l] = -0.5 * kLog2E * imageLoad(lobes, at + 3).x;
+        amplitude[l] = vec3(imageLoad(lobes, at + 4).x, imageLoad(lobes, at + 5).x, imageLoad(lobes, at + 6).x);
+    }
+}
+
+void store(uint n, uint first)
+{
+    uint to = n * 3 * push.directions + first * push.directionStride;
+    [[unroll]] for (uint c = 0; c < 3; ++c) {
+        if (TILE == 4)
+            radianceQuads[(to + c * push.channelStride) / 4] =
+                vec4(sum[0][c], sum[1 % TILE][c], sum[2 % TILE][c], sum[3 % TILE][c]);
+        else
+            radiance[to + c * push.channelStride] = sum[0][c];
+    }
+}
 
 void main()
 {
-    uint n = push.firstImage + gl_GlobalInvocationID.y;
+    uint n = push.firstImage + gl_GlobalInvocationID.x;
     if (n >= push.images)
         return;
-    uint first = gl_GlobalInvocationID.x / 8 * 8 * P + gl_GlobalInvocationID.x % 8;
-    vec3 direction[P];
-    vec3 sum[P];
-    [[unroll]] for (uint j = 0; j < P; ++j) {
-        uint d = min(first + j * 8, push.directions - 1);
-        int at = int(n * push.directionImageStride + d * 3);
-        direction[j] = vec3(imageLoad(directions, at).x, imageLoad(directions, at + 1).x, imageLoad(directions, at + 2).x);
-        sum[j] = vec3(0.0);
-    }
-    int image = int(n * push.lobes * 7);
-    for (uint block = 0; block < push.lobes; block += kLanes) {
-        float lobe[7];
-        if (SHUFFLE != 0) {
-            uint own = min(block + gl_SubgroupInvocationID % kLanes, push.lobes - 1);
-            [[unroll]] for (int k = 0; k < 7; ++k)
-                lobe[k] = imageLoad(lobes, image + int(own) * 7 + k).x;
+    if (BLOCKS == 1)
+        loadLobes(n * push.lobes);
+    uint begin = gl_GlobalInvocationID.y * kSgMixtureSlice;
+    uint end = min(begin + kSgMixtureSlice, push.directions);
+    for (uint first = begin; first < end; first += TILE) {
+        loadDirections(n, first);
+        [[unroll]] for (uint j = 0; j < TILE; ++j)
+            sum[j] = vec3(0.0);
+        for (uint block = 0; block < BLOCKS; ++block) {
+            if (BLOCKS > 1)
+                loadLobes(n * push.lobes + block * LOBES);
+            [[unroll]] for (uint l = 0; l < LOBES; ++l)
+                [[unroll]] for (uint j = 0; j < TILE; ++j) {
+                    vec3 chord = direction[j] - axis[l];
+                    sum[j] += amplitude[l] * nnExp2Negative(falloff[l] * dot(chord, chord));
+                }
         }
-        [[unroll]] for (uint l = 0; l < kLanes; ++l) {
-            // Past the last lobe the last one is read again, with no amplitude.
-            bool there = block + l < push.lobes;
-            int at = image + int(min(block + l, push.lobes - 1)) * 7;
-            float value[7];
-            [[unroll]] for (int k = 0; k < 7; ++k) {
-                if (SHUFFLE != 0)
-                    value[k] = subgroupShuffle(lobe[k], l);
-                else
-                    value[k] = imageLoad(lobes, at + k).x;
-            }
-            vec3 axis = vec3(value[0], value[1], value[2]);
-            vec3 amplitude = there ? vec3(value[4], value[5], value[6]) : vec3(0.0);
-            [[unroll]] for (uint j = 0; j < P; ++j) {
-                vec3 chord = direction[j] - axis;
-                sum[j] += amplitude * nnExp(-0.5 * value[3] * dot(chord, chord));
-            }
-        }
-    }
-    [[unroll]] for (uint j = 0; j < P; ++j) {
-        uint d = first + j * 8;
-        if (d < push.directions) {
-            uint to = n * 3 * push.directions + d * push.directionStride;
-            radiance[to] = sum[j].x;
-            radiance[to + push.channelStride] = sum[j].y;
-            radiance[to + 2 * push.channelStride] = sum[j].z;
-        }
+        store(n, first);
     }
 }

@@ -1,90 +1,88 @@
-// Gradient of the mixture and its decoder: one invocation gathers over all directions of its lobe, in order.
-// With SHUFFLE, eight lanes load eight directions and hand them round. dRaw is overwritten. Saved: raw (decoded again here, which is cheaper than loading the lobe).
+// Gradient of the mixture and its decoder: a lane is an image, an invocation gathers over all directions of LOBES of its
+// lobes, in order. dRaw is overwritten. Saved: raw (decoded again here, which is cheaper than loading the lobe).
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 
 #include "nn/sg_lobe.glsl"
 
 layout(local_size_x = 8) in;
-layout(constant_id = 0) const uint SHUFFLE = 0; // 1: the lobes are a multiple of eight, so a workgroup has one image
+layout(constant_id = 0) const uint LOBES = 1; // of one invocation
+layout(constant_id = 1) const uint TILE = 1;  // directions at once, as in the forward pass
 layout(binding = 0, r32f) uniform readonly imageBuffer raw;        // [N,L,7]
 layout(binding = 1, r32f) uniform readonly imageBuffer directions; // [N,D,3] or [D,3], unit
-layout(binding = 2, r32f) uniform readonly imageBuffer dRadiance;  // strides as in the forward pass
-layout(binding = 3, scalar) writeonly buffer DRaw { float dRaw[]; };
+layout(binding = 2, rgba32f) uniform readonly imageBuffer directionQuads;
+layout(binding = 3, r32f) uniform readonly imageBuffer dRadiance; // strides as in the forward pass
+layout(binding = 4, rgba32f) uniform readonly imageBuffer dRadianceQuads;
+layout(binding = 5, scalar) writeonly buffer DRaw { float dRaw[]; };
 layout(push_constant, scalar) uniform Push { SgMixturePush push; };
 
-const uint kLanes = 8;
+#include "nn/sg_directions.glsl"
 
-vec3 loadDirection(int list, uint d)
-{
-    int at = list + int(d) * 3;
-    return vec3(imageLoad(directions, at).x, imageLoad(directions, at + 1).x, imageLoad(directions, at + 2).x);
-}
+vec3 dOut[TILE];
 
-vec3 loadOut(int image, uint d)
+void loadOut(uint n, uint first)
 {
-    int at = image + int(d * push.directionStride);
-    int step = int(push.channelStride);
-    return vec3(imageLoad(dRadiance, at).x, imageLoad(dRadiance, at + step).x, imageLoad(dRadiance, at + 2 * step).x);
+    int at = int(n * 3 * push.directions + first * push.directionStride);
+    [[unroll]] for (int c = 0; c < 3; ++c) {
+        int from = at + c * int(push.channelStride);
+        vec4 value = TILE == 4 ? imageLoad(dRadianceQuads, from / 4) : vec4(imageLoad(dRadiance, from).x);
+        [[unroll]] for (uint j = 0; j < TILE; ++j)
+            dOut[j][c] = value[j];
+    }
 }
 
 void main()
 {
-    uint lobe = gl_GlobalInvocationID.x + push.firstImage * push.lobes;
-    if (lobe >= push.images * push.lobes)
+    uint n = push.firstImage + gl_GlobalInvocationID.x;
+    if (n >= push.images)
         return;
-    uint n = lobe / push.lobes;
-    int at = int(lobe) * 7;
-    vec3 rawAxis = vec3(imageLoad(raw, at).x, imageLoad(raw, at + 1).x, imageLoad(raw, at + 2).x);
-    float rawSharpness = imageLoad(raw, at + 3).x;
-    vec3 rawAmplitude = vec3(imageLoad(raw, at + 4).x, imageLoad(raw, at + 5).x, imageLoad(raw, at + 6).x);
-    float axisLength = rawAxisLength(rawAxis);
-    vec3 axis = decodeAxis(rawAxis, axisLength);
-    float sharpness = decodeSharpness(rawSharpness);
-    vec3 amplitude = vec3(nnSoftplus(rawAmplitude.x), nnSoftplus(rawAmplitude.y), nnSoftplus(rawAmplitude.z));
-
-    vec3 dAxis = vec3(0.0);
-    vec3 dAmplitude = vec3(0.0);
-    float dSharpness = 0.0;
-    int from = int(n * 3 * push.directions);
-    int along = int(n * push.directionImageStride);
-    for (uint block = 0; block < push.directions; block += kLanes) {
-        vec3 ownDirection = vec3(0.0);
-        vec3 ownOut = vec3(0.0);
-        if (SHUFFLE != 0) {
-            uint own = min(block + gl_SubgroupInvocationID % kLanes, push.directions - 1);
-            ownDirection = loadDirection(along, own);
-            ownOut = loadOut(from, own);
-        }
-        [[unroll]] for (uint k = 0; k < kLanes; ++k) {
-            // Past the last direction the last one is read again, with no gradient.
-            bool there = block + k < push.directions;
-            uint d = min(block + k, push.directions - 1);
-            vec3 direction = SHUFFLE != 0 ? subgroupShuffle(ownDirection, k) : loadDirection(along, d);
-            vec3 dOut = SHUFFLE != 0 ? subgroupShuffle(ownOut, k) : loadOut(from, d);
-            dOut = there ? dOut : vec3(0.0);
-            vec3 chord = direction - axis;
-            float squared = dot(chord, chord);
-            float weight = nnExp(-0.5 * sharpness * squared);
-            float dExponent = dot(dOut, amplitude) * weight;
-            dAmplitude += dOut * weight;
-            dSharpness -= 0.5 * squared * dExponent;
-            dAxis += dExponent * chord;
-        }
+    uint firstLobe = n * push.lobes + gl_GlobalInvocationID.y * LOBES;
+    vec3 rawAxis[LOBES], axis[LOBES], rawAmplitude[LOBES], amplitude[LOBES];
+    float axisLength[LOBES], rawSharpness[LOBES], sharpness[LOBES];
+    vec3 dAxis[LOBES], dAmplitude[LOBES];
+    float dSharpness[LOBES];
+    [[unroll]] for (uint l = 0; l < LOBES; ++l) {
+        int at = int(firstLobe + l) * 7;
+        rawAxis[l] = vec3(imageLoad(raw, at).x, imageLoad(raw, at + 1).x, imageLoad(raw, at + 2).x);
+        rawSharpness[l] = imageLoad(raw, at + 3).x;
+        rawAmplitude[l] = vec3(imageLoad(raw, at + 4).x, imageLoad(raw, at + 5).x, imageLoad(raw, at + 6).x);
+        axisLength[l] = rawAxisLength(rawAxis[l]);
+        axis[l] = decodeAxis(rawAxis[l], axisLength[l]);
+        sharpness[l] = decodeSharpness(rawSharpness[l]);
+        amplitude[l] = vec3(nnSoftplus(rawAmplitude[l].x), nnSoftplus(rawAmplitude[l].y), nnSoftplus(rawAmplitude[l].z));
+        dAxis[l] = dAmplitude[l] = vec3(0.0);
+        dSharpness[l] = 0.0;
     }
-    dAxis *= sharpness;
+
+    for (uint first = 0; first < push.directions; first += TILE) {
+        loadDirections(n, first);
+        loadOut(n, first);
+        [[unroll]] for (uint l = 0; l < LOBES; ++l)
+            [[unroll]] for (uint j = 0; j < TILE; ++j) {
+                vec3 chord = direction[j] - axis[l];
+                float squared = dot(chord, chord);
+                vec3 weighted = dOut[j] * nnExp2Negative(-0.5 * kLog2E * sharpness[l] * squared);
+                float dExponent = dot(weighted, amplitude[l]);
+                dAmplitude[l] += weighted;
+                dSharpness[l] -= 0.5 * squared * dExponent;
+                dAxis[l] += dExponent * chord;
+            }
+    }
 
     // Back through the decoder: the part tangent to the sphere, over the raw length.
-    vec3 tangent = axisLength == 0.0 ? vec3(0.0) : (dAxis - axis * dot(axis, dAxis)) / axisLength;
-    dRaw[at] = tangent.x;
-    dRaw[at + 1] = tangent.y;
-    dRaw[at + 2] = tangent.z;
-    dRaw[at + 3] = dSharpness * decodeSharpnessDerivative(rawSharpness, sharpness);
-    dRaw[at + 4] = dAmplitude.x * nnSigmoid(rawAmplitude.x);
-    dRaw[at + 5] = dAmplitude.y * nnSigmoid(rawAmplitude.y);
-    dRaw[at + 6] = dAmplitude.z * nnSigmoid(rawAmplitude.z);
+    [[unroll]] for (uint l = 0; l < LOBES; ++l) {
+        uint at = (firstLobe + l) * 7;
+        dAxis[l] *= sharpness[l];
+        vec3 tangent =
+            axisLength[l] == 0.0 ? vec3(0.0) : (dAxis[l] - axis[l] * dot(axis[l], dAxis[l])) / axisLength[l];
+        dRaw[at] = tangent.x;
+        dRaw[at + 1] = tangent.y;
+        dRaw[at + 2] = tangent.z;
+        dRaw[at + 3] = dSharpness[l] * decodeSharpnessDerivative(rawSharpness[l], sharpness[l]);
+        dRaw[at + 4] = dAmplitude[l].x * nnSigmoid(rawAmplitude[l].x);
+        dRaw[at + 5] = dAmplitude[l].y * nnSigmoid(rawAmplitude[l].y);
+        dRaw[at + 6] = dAmplitude[l].z * nnSigmoid(rawAmplitude[l].z);
+    }
 }

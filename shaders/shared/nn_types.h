@@ -153,6 +153,14 @@ struct TileListPush
     uint endRow;
 };
 
+struct SumPush
+{
+    uint count;       // floats
+    uint turns;       // of one invocation, four floats each
+    uint invocations; // one, or a multiple of eight
+    float scale;      // of the result
+};
+
 struct LossPush
 {
     uint count;
@@ -182,6 +190,9 @@ struct AdamPush
     float oneMinusBeta2;
     float epsilon;
 };
+
+// Directions that one invocation of the forward mixture works through.
+STRANDLIGHT_CONST(uint) kSgMixtureSlice = 256u;
 
 // Element (n, direction, c) of a radiance tensor is at n 3 D + direction directionStride + c channelStride.
 struct SgMixturePush
