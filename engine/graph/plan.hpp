@@ -2,6 +2,7 @@
 // memory. Pure data, made without a device; the executor only obeys.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -51,5 +52,7 @@ GraphPlan planGraph(const GraphDescription& description);
 // One line a pass: what it waits for, reads and writes.
 std::string toText(const GraphPlan& plan);
 std::string toGraphviz(const GraphPlan& plan);
+// Bytes of the transients with and without shared memory, then the `largest` of them, one a line.
+std::string memoryText(const GraphPlan& plan, std::size_t largest = 6);
 
 } // namespace strandlight

@@ -46,6 +46,36 @@ KernelMeasurement measureMultiplyAdd(Context& context, bool quick)
     return m;
 }
 
+KernelMeasurement measureExponential(Context& context, bool quick)
+{
+    const std::uint32_t threads = quick ? 1024 : 16384;
+    const gpu::BenchLoopPush push{.turns = quick ? 16u : 64u, .factor = -0.1f, .addend = 0.0f};
+    RenderGraph graph(context);
+    PassBuilder pass = graph.addComputePass("exp");
+    const BufferId result = pass.write(graph.createBuffer("result", threads * 4));
+    pass.dispatch(kernels::bench_exp, {threads, 1, 1}, push, {result});
+    graph.output(result);
+
+    KernelMeasurement m;
+    m.timing = timeGraph(graph, kRuns);
+    m.flops = double(threads) * push.turns * gpu::kBenchExpUnroll * gpu::kBenchExpChains;
+    const std::vector<float> values = graph.read<float>(result);
+    std::vector<double> got, wanted;
+    for (std::uint32_t id = 0; id < threads; id += 97) {
+        double sum = 0.0;
+        for (std::uint32_t k = 0; k < gpu::kBenchExpChains; ++k) {
+            double chain = double(push.factor) * (k + 1) - (id & 7u);
+            for (std::uint32_t step = 0; step < push.turns * gpu::kBenchExpUnroll; ++step)
+                chain = -std::exp2(chain);
+            sum += chain;
+        }
+        got.push_back(values[id]);
+        wanted.push_back(sum);
+    }
+    m.error = normError(got, wanted);
+    return m;
+}
+
 KernelMeasurement measureTriad(Context& context, bool quick)
 {
     // Three buffers of 128 MiB, the most that one binding takes: larger than any cache.
@@ -106,8 +136,10 @@ double normError(const std::vector<double>& got, const std::vector<double>& want
 Ceilings measureCeilings(Context& context, const BenchOptions& options)
 {
     const Ceilings ceilings{measureMultiplyAdd(context, options.quick),
+                            measureExponential(context, options.quick),
                             measureTriad(context, options.quick)};
     requireCheck("ceiling multiply-add", ceilings.multiplyAdd);
+    requireCheck("ceiling exp", ceilings.exponential);
     requireCheck("ceiling triad", ceilings.triad);
     return ceilings;
 }

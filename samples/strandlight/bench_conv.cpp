@@ -204,9 +204,10 @@ void addConvBenchCases(std::vector<KernelCase>& cases)
         {{.in = 32, .out = 16, .kernel = {4, 4}, .padding = {1, 1}}, 320, 180},
         {{.in = 64, .out = 32}, 160, 90}};
     const auto add = [&](const std::string& name, const auto& c, auto measure) {
-        cases.push_back({name + nameOf(c), [=](Context& context, const BenchOptions& o) {
-                             return measure(context, c, o);
-                         }});
+        cases.push_back(
+            {name + nameOf(c), [=](Context& context, const BenchOptions& o, const Ceilings&) {
+                 return measure(context, c, o);
+             }});
     };
     for (const auto& c : convs)
         add("conv ", c, measureForward<Conv2dDesc>);

@@ -1,6 +1,9 @@
 // Whole networks of `strandlight bench kernels`: forward pass and training step.
+#include <cstdio>
+
 #include "compute_nn/reference/networks.hpp"
 #include "compute_nn/unet.hpp"
+#include "engine/graph/plan.hpp"
 #include "samples/strandlight/bench_conv_twin.hpp"
 #include "samples/strandlight/bench_kernels.hpp"
 
@@ -65,16 +68,13 @@ Timing timeForward(Context& context, const NetworkCase& c, Parameters& parameter
     return timeGraph(graph, runs);
 }
 
-Timing timeStep(Context& context, const NetworkCase& c, Parameters& parameters, const TensorDesc& x,
-                std::uint32_t runs)
+void addStep(RenderGraph& graph, const NetworkCase& c, Parameters& parameters, const TensorDesc& x)
 {
-    RenderGraph graph(context);
     ParameterIds ids(graph, parameters);
     const TensorDesc y = outputOf(c, x);
     const TensorId input = uploadTensor(graph, "x", x, randomValues(x.elements(), 5));
     const TensorId target = uploadTensor(graph, "target", y, randomValues(y.elements(), 6));
     addUNetTrainingStep(graph, c.net, ids, input, target, {}, 1);
-    return timeGraph(graph, runs);
 }
 
 TensorDesc inputOf(const NetworkCase& c, bool quick)
@@ -104,27 +104,48 @@ KernelMeasurement measureStep(Context& context, const NetworkCase& c, const Benc
     const double forward = m.timing.median;
     Parameters parameters(context, c.net.parameters(), kSeed);
     const TensorDesc x = inputOf(c, o.quick);
-    m.timing = timeStep(context, c, parameters, x, o.quick ? 2 : kRuns);
+    RenderGraph graph(context);
+    addStep(graph, c, parameters, x);
+    m.timing = timeGraph(graph, o.quick ? 2 : kRuns);
     // Backward: a data and a weight gradient of each layer, but no data gradient of the first.
     m.flops = 3.0 * forwardFlops(c.net, x) - convFlops(c.net.encoder(c.net.head > 0 ? 0 : 1), x);
     m.more["over_forward"] = m.timing.median / forward;
     return m;
 }
 
+std::vector<NetworkCase> networks()
+{
+    return {{"U-Net 24-16-32-64-64-3 640x384", benchmarkUNet(), {1, 24, 384, 640}},
+            {"hair U-Net 640x384", hairUNet(), {1, 25, 384, 640}}};
+}
+
 } // namespace
 
 void addNetworkBenchCases(std::vector<KernelCase>& cases)
 {
-    const NetworkCase networks[] = {
-        {"U-Net 24-16-32-64-64-3 640x384", benchmarkUNet(), {1, 24, 384, 640}},
-        {"hair U-Net 640x384", hairUNet(), {1, 25, 384, 640}}};
-    for (const NetworkCase& c : networks) {
-        cases.push_back({c.name + " forward", [c](Context& context, const BenchOptions& o) {
-                             return measureForward(context, c, o);
-                         }});
-        cases.push_back({c.name + " training step", [c](Context& context, const BenchOptions& o) {
+    for (const NetworkCase& c : networks()) {
+        cases.push_back(
+            {c.name + " forward", [c](Context& context, const BenchOptions& o, const Ceilings&) {
+                 return measureForward(context, c, o);
+             }});
+        cases.push_back({c.name + " training step",
+                         [c](Context& context, const BenchOptions& o, const Ceilings&) {
                              return measureStep(context, c, o);
                          }});
+    }
+}
+
+void printMemoryPlans(Context& context)
+{
+    for (const NetworkCase& c : networks()) {
+        Parameters parameters(context, c.net.parameters(), kSeed);
+        RenderGraph graph(context);
+        addStep(graph, c, parameters, c.input);
+        std::printf("%s, one training step\n", c.name.c_str());
+        std::printf("  parameters      %s, with gradients and moments %s\n",
+                    bytesText(parameters.layout().count() * 4ull).c_str(),
+                    bytesText(parameters.layout().count() * 16ull).c_str());
+        std::printf("%s", memoryText(graph.compile()).c_str());
     }
 }
 

@@ -9,8 +9,8 @@ using namespace strandlight::test;
 TEST_CASE("every subcommand explains itself with examples")
 {
     const std::vector<std::vector<std::string>> commands = {
-        {},          {"info"}, {"bake"},   {"render"},     {"reference"},
-        {"compare"}, {"fits"}, {"report"}, {"nn", "check"}};
+        {},          {"info"}, {"bake"},   {"render"},      {"reference"},
+        {"compare"}, {"fits"}, {"report"}, {"nn", "check"}, {"bench", "kernels"}};
     for (std::vector<std::string> arguments : commands) {
         arguments.push_back("--help");
         const CommandResult result = runCommand(arguments);
@@ -59,6 +59,9 @@ TEST_CASE("wrong arguments are named")
         {{"render", "builtin:box", "--bake", "a.sgl", "-o", out + "png", "--view", "x"}, "--view"},
         {{"compare", "a.png"}, "B"},
         {{"nn"}, "subcommand"},
+        {{"bench"}, "subcommand"},
+        {{"bench", "kernels", "--json", "a.txt"}, ".json"},
+        {{"bench", "kernels", "--filter", "no such case"}, "no such case"},
         {{"nn", "check"}, "FILES"},
     };
     for (const Case& wrong : cases)
