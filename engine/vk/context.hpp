@@ -14,6 +14,7 @@ struct DeviceInfo
     std::string driver;
     std::string type;                  // "discrete", "integrated", "cpu", ...
     std::vector<std::string> refusals; // why this device cannot be used; empty: it can
+    std::string matrixUnits;           // whether kernels use them, or what is missing
 };
 
 struct ContextSettings

@@ -64,6 +64,16 @@ bool hasExtension(VkPhysicalDevice device, const char* name)
                        [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
+// The headers that the engine is built with may be older than the extension: asked for by name.
+// Kernels for it need GL_KHR_cooperative_matrix in the shader compiler as well (glslang 13; Debian
+// 12 has 12).
+std::string matrixUnits(VkPhysicalDevice device)
+{
+    return hasExtension(device, "VK_KHR_cooperative_matrix")
+               ? "not used: built without GL_KHR_cooperative_matrix (glslang 13)"
+               : "not used: the device lacks VK_KHR_cooperative_matrix";
+}
+
 // A number is an index and nothing else: "1" must not match a name with a 1 in it.
 bool isIndex(const std::string& text)
 {
@@ -106,6 +116,7 @@ DeviceInfo describeDevice(VkPhysicalDevice device)
             ", 1.3 is needed");
         return info;
     }
+    info.matrixUnits = matrixUnits(device);
     DeviceFeatures has;
     vkGetPhysicalDeviceFeatures2(device, &has.core);
     for (const FeatureRow& row : kRequired)

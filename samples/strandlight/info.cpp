@@ -33,10 +33,13 @@ Json showDevices()
                     device.driver.c_str(), device.refusals.empty() ? "usable" : "refused");
         for (const std::string& reason : device.refusals)
             std::printf("     lacks %s\n", reason.c_str());
+        if (device.refusals.empty())
+            std::printf("     matrix units %s\n", device.matrixUnits.c_str());
         json.push_back({{"name", device.name},
                         {"driver", device.driver},
                         {"type", device.type},
                         {"usable", device.refusals.empty()},
+                        {"matrix_units", device.matrixUnits},
                         {"refusals", device.refusals}});
     }
     if (json.empty())
