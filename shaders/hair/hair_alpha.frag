@@ -6,7 +6,7 @@
 
 layout(location = 0) flat in uvec2 ids;
 layout(location = 1) noperspective in vec2 line;
-layout(location = 2) in vec4 light;
+layout(location = 2) centroid in vec4 light;
 layout(location = 0) out vec4 color; // radiance, alpha: the device covers so many of the samples
 
 void main()

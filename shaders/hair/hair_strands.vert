@@ -7,7 +7,7 @@
 layout(binding = 3, rgba32f) uniform readonly imageBuffer shaded;
 layout(location = 0) flat out uvec2 ids;
 layout(location = 1) noperspective out vec2 line;
-layout(location = 2) out vec4 light; // radiance, illumination
+layout(location = 2) centroid out vec4 light; // radiance, illumination
 layout(location = 3) noperspective out vec2 tangent;
 
 void main()
