@@ -242,6 +242,21 @@ HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, Ha
     return sums;
 }
 
+ImageId addHairIlluminationPass(RenderGraph& graph, const HairSampleIds& samples, ImageId sum,
+                                float weight)
+{
+    if (!samples.features.valid())
+        throw Error("hair: the illumination needs strands drawn with features");
+    PassBuilder pass = graph.addComputePass("hair illumination");
+    pass.sample(samples.features);
+    sum = pass.write(sum);
+    const glm::uvec3 extent = graph.extent(samples.features);
+    pass.dispatch(kernels::hair_illumination, extent,
+                  gpu::HairResolvePush{extent.x, extent.y, weight},
+                  {Binding(samples.features, Filter::Nearest), sum});
+    return sum;
+}
+
 TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height)
 {
     const auto padded = [](std::uint32_t side) { return (side + 7) / 8 * 8; };

@@ -71,6 +71,11 @@ HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, Ha
 // Record of a TileList's arguments for workgroups of 8x8 pixels (shaders/nn/tiles.glsl).
 inline constexpr std::uint64_t kPictureTiles = (gpu::kConvTileWidth / 8 - 1) * 12;
 
+// Adds weight times the mean illumination of the four samples to `sum`, R32F [height, width]; 0
+// counts where there is no hair. Throws Error when the samples came without features.
+ImageId addHairIlluminationPass(RenderGraph& graph, const HairSampleIds& samples, ImageId sum,
+                                float weight);
+
 // [1,25,H,W] of the network's input: the picture's sides, rounded up to multiples of 8.
 TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height);
 

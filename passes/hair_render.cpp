@@ -41,16 +41,6 @@ void checkSettings(const HairRenderSettings& s)
                     std::to_string(s.width) + "x" + std::to_string(s.height));
 }
 
-// Where the samples of frame i lie, off the pixel's by up to a quarter pixel: with the four
-// samples' own places that is close to a box of one pixel.
-// Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
-glm::vec2 frameJitter(std::uint32_t frame)
-{
-    const double x = 0.5 + 0.7548776662466927 * double(frame);
-    const double y = 0.5 + 0.5698402909980532 * double(frame);
-    return {float(0.5 * (x - std::floor(x)) - 0.25), float(0.5 * (y - std::floor(y)) - 0.25)};
-}
-
 void addTimings(std::vector<PassTiming>& sum, const std::vector<PassTiming>& more)
 {
     for (const PassTiming& timing : more) {
@@ -146,7 +136,7 @@ public:
         view.trueWidth = settings_.mode == HairMode::Reference;
         for (std::uint32_t i = 0; i < settings_.frames; ++i) {
             view.frame = settings_.frameIndex + i;
-            view.jitter = settings_.frames > 1 ? frameJitter(i) : glm::vec2(0.0f);
+            view.jitter = settings_.frames > 1 ? hairFrameJitter(i) : glm::vec2(0.0f);
             RenderGraph graph(context_);
             graph.setTimings(true);
             const HairSampleIds samples = addHairStrandsPass(
@@ -224,6 +214,14 @@ private:
 };
 
 } // namespace
+
+// Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
+glm::vec2 hairFrameJitter(std::uint32_t frame)
+{
+    const double x = 0.5 + 0.7548776662466927 * double(frame);
+    const double y = 0.5 + 0.5698402909980532 * double(frame);
+    return {float(0.5 * (x - std::floor(x)) - 0.25), float(0.5 * (y - std::floor(y)) - 0.25)};
+}
 
 HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opaque,
                      const Camera& camera, const HairRenderSettings& settings)

@@ -74,6 +74,10 @@ struct HairFrame
     std::uint32_t drawnSegments = 0;
 };
 
+// Where the samples of frame i lie, off the pixel's by up to a quarter pixel: with the four
+// samples' own places that is close to a box of one pixel.
+glm::vec2 hairFrameJitter(std::uint32_t frame);
+
 // `opaque` may be null; its triangles hide hair and cast shadows, its punctual lights light it.
 // Without strands nothing is created on the device and the picture is the background.
 // Throws Error for broken hair (checkHair), a size that is empty or over 8192, a background of

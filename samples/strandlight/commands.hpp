@@ -14,6 +14,7 @@ Command addFits(CLI::App& parent);
 Command addReport(CLI::App& parent);
 Command addNnCheck(CLI::App& parent);
 Command addHair(CLI::App& parent);
+Command addHairTrain(CLI::App& hair); // called by addHair
 Command addBench(CLI::App& parent);
 Command addStress(CLI::App& parent);
 

@@ -1,5 +1,6 @@
 // strandlight hair: pictures of hair files and built-in grooms.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -261,9 +262,12 @@ Command addHair(CLI::App& parent)
 {
     CLI::App* app = parent.add_subcommand("hair", "Hair with stochastic transparency");
     app->require_subcommand(1);
-    const Command commands[] = {addHairRender(*app), addHairReference(*app)};
-    return {app, [render = commands[0], reference = commands[1]] {
-                return render.app->parsed() ? render.run() : reference.run();
+    const Command commands[] = {addHairRender(*app), addHairReference(*app), addHairTrain(*app)};
+    return {app, [commands = std::to_array(commands)] {
+                for (const Command& command : commands)
+                    if (command.app->parsed())
+                        return command.run();
+                throw Error("hair: no command");
             }};
 }
 
