@@ -77,7 +77,7 @@ std::vector<gpu::HairLight> hairLights(const HairStrands& hair, const Scene* opa
     std::vector<PunctualLight> sources;
     if (opaque)
         sources = opaque->lights;
-    if (sources.empty())
+    if (sources.empty() && !settings.distant)
         sources.push_back({.type = LightType::Directional,
                            .direction = -glm::normalize(settings.keyDirection),
                            .intensity = settings.keyIrradiance});
@@ -96,6 +96,21 @@ std::vector<gpu::HairLight> hairLights(const HairStrands& hair, const Scene* opa
         lights.push_back(light);
     }
     return lights;
+}
+
+gpu::HairLight hairShadowDirection(const HairStrands& hair, const Scene* opaque, glm::vec3 towards,
+                                   std::uint32_t shadowSize)
+{
+    gpu::HairLight light{};
+    light.type = std::uint32_t(LightType::Directional);
+    light.direction = -towards;
+    aimShadow(light, boundingSphere(hair), opaque, shadowSize);
+    return light;
+}
+
+float hairLightShare(std::span<const gpu::HairLight> lights, const HairRenderSettings& settings)
+{
+    return 1.0f / float(std::max<std::size_t>(1, lights.size() + (settings.distant ? 1 : 0)));
 }
 
 bool hairLightCastsShadow(const HairStrands& hair, const gpu::HairLight& light)

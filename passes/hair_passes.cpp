@@ -4,87 +4,14 @@
 
 #include "engine/base/error.hpp"
 #include "kernels.gen.hpp"
+#include "passes/hair_draw.hpp"
 
 namespace strandlight {
 namespace {
 
-static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 96 &&
-              sizeof(gpu::HairShadePush) == 52 && sizeof(gpu::HairLight) == 120 &&
+static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 100 &&
+              sizeof(gpu::HairShadePush) == 56 && sizeof(gpu::HairLight) == 120 &&
               sizeof(gpu::HairInputPush) == 36);
-
-gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view)
-{
-    gpu::HairStrandPush push{};
-    push.viewProjection = view.viewProjection;
-    push.size = glm::vec2(view.width, view.height);
-    push.jitter = view.jitter;
-    // Clip y per metre: the length of the second row's linear part.
-    const glm::mat4& m = view.viewProjection;
-    push.pixelsPerUnit =
-        0.5f * float(view.height) * glm::length(glm::vec3(m[0][1], m[1][1], m[2][1]));
-    push.widthScale = buffers.widthScale;
-    push.minimumWidth = view.trueWidth ? 0.0f : 1.0f;
-    push.alpha = view.alpha;
-    push.frame = view.frame;
-    return push;
-}
-
-gpu::HairOpaquePush opaquePush(const HairView& view)
-{
-    gpu::HairOpaquePush push{};
-    push.viewProjection = view.viewProjection;
-    push.size = glm::vec2(view.width, view.height);
-    push.jitter = view.jitter;
-    return push;
-}
-
-void drawOpaque(RenderGraph& graph, PassBuilder& pass, HairBuffers& buffers,
-                const gpu::HairOpaquePush& push, const KernelBlob& fragment, Blend blend)
-{
-    if (buffers.triangleCount == 0)
-        return;
-    const BufferId surface = pass.read(graph.importBuffer(buffers.surface));
-    const BufferId lights = pass.read(graph.importBuffer(buffers.lights));
-    const BufferId visibility = pass.read(graph.importBuffer(buffers.visibility));
-    const RasterDesc raster{
-        .vertex = &kernels::hair_opaque_vert, .fragment = &fragment, .blend = blend};
-    pass.draw(raster, buffers.triangleCount * 3, 1, push, {surface, lights, visibility});
-}
-
-// What every strand draw reads.
-struct StrandIds
-{
-    BufferId points, tangents, segments;
-};
-
-StrandIds readStrands(RenderGraph& graph, PassBuilder& pass, HairBuffers& buffers)
-{
-    return {pass.read(graph.importBuffer(buffers.points)),
-            pass.read(graph.importBuffer(buffers.tangents)),
-            pass.read(graph.importBuffer(buffers.segments))};
-}
-
-ImageId addShadowPass(RenderGraph& graph, HairBuffers& buffers, const gpu::HairLight& light,
-                      std::uint32_t index, const HairRenderSettings& settings)
-{
-    // One pass clears, draws what hides and then what hides at random.
-    PassBuilder pass = graph.addRasterPass("hair shadow " + std::to_string(index));
-    const std::uint32_t size = settings.shadowSize;
-    const ImageId map =
-        pass.depth(graph.createImage("hair shadow map", {size, size, 1, Format::Depth32F, 4}));
-    HairView view;
-    view.viewProjection = light.shadowMatrix;
-    view.width = view.height = size;
-    view.alpha = settings.alpha;
-    view.frame = settings.frameIndex + 0x40000000u + index; // masks unlike the camera's
-    drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_depth_frag, Blend::None);
-    const StrandIds strands = readStrands(graph, pass, buffers);
-    const RasterDesc raster{.vertex = &kernels::hair_silhouette_vert,
-                            .fragment = &kernels::hair_shadow_frag};
-    pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
-              {strands.points, strands.tangents, strands.segments});
-    return map;
-}
 
 // Lets hair darken what is below it.
 void addSurfaceShadowPass(RenderGraph& graph, HairBuffers& buffers, ImageId map,
@@ -117,12 +44,17 @@ BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
     push.pointCount = buffers.pointCount;
     push.lightCount = std::uint32_t(lights.size());
     push.shadowSize = settings.shadowSize;
+    push.share = hairLightShare(lights, settings);
     for (std::uint32_t i = 0; i < push.lightCount; ++i) {
         push.light = i;
         push.first = i == 0 ? 1 : 0;
         ImageId map;
         if (shadowed[i])
-            map = addShadowPass(graph, buffers, lights[i], i, settings);
+            map = addHairShadowPass(graph, buffers, "hair shadow " + std::to_string(i), lights[i],
+                                    {.size = settings.shadowSize,
+                                     .masks = i,
+                                     .alpha = settings.alpha,
+                                     .frame = settings.frameIndex});
         if (shadowed[i] && buffers.triangleCount > 0 && i < gpu::kHairSurfaceLights)
             addSurfaceShadowPass(graph, buffers, map, i, settings.shadowSize);
         PassBuilder pass = graph.addComputePass("hair shading " + std::to_string(i));
@@ -158,6 +90,7 @@ HairSampleIds addHairOccludersPass(RenderGraph& graph, HairBuffers& buffers, con
     gpu::HairOpaquePush push = opaquePush(view);
     push.ambient = settings.ambient;
     push.lightCount = lightCount;
+    push.lobeCount = settings.distant ? std::uint32_t(settings.distant->lobes.size()) : 0u;
     drawOpaque(graph, pass, buffers, push,
                plainSurfaces ? kernels::hair_opaque_frag : kernels::hair_depth_frag, Blend::None);
     return ids;

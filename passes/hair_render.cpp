@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "passes/hair_filter.hpp"
+#include "passes/hair_lobe_passes.hpp"
 #include "passes/hair_network.hpp"
 #include "passes/hair_passes.hpp"
 
@@ -96,6 +97,8 @@ public:
                           ? 1
                           : automaticHairLod(hair, camera, settings.height);
         buffers_ = uploadHair(context, hair, opaque, lights_, out.lod);
+        if (settings.distant)
+            uploadHairLobes(context, buffers_, hair, opaque, *settings.distant, settings);
         out.drawnStrands = buffers_.strandCount;
         out.drawnSegments = buffers_.segmentCount;
         view_.viewProjection = cameraViewProjection(camera, settings.width, settings.height,
@@ -112,7 +115,11 @@ public:
     {
         RenderGraph graph(context_);
         graph.setTimings(true);
-        addHairShadingPasses(graph, buffers_, lights_, shadowed_, view_, settings_);
+        const BufferId lit =
+            addHairShadingPasses(graph, buffers_, lights_, shadowed_, view_, settings_);
+        if (settings_.distant)
+            addHairLobePasses(graph, buffers_, lit, lights_.empty(), *settings_.distant, view_,
+                              settings_);
         const bool wanted = settings_.exactCoverage || settings_.filter == HairFilter::Coverage;
         if (!wanted || settings_.filter == HairFilter::UNet) {
             if (settings_.filter != HairFilter::UNet) // that has the pass in its own graph

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "engine/graph/render_graph.hpp"
 #include "engine/scene/camera.hpp"
 #include "engine/scene/hair.hpp"
+#include "shaders/shared/hair_types.h"
 
 namespace strandlight {
 
@@ -33,6 +35,13 @@ enum class HairFilter : std::uint32_t
 };
 
 struct HairNetwork;
+
+// Light from far away: an environment, or a bake's light field at the hair (hair_distant.hpp).
+struct HairDistantLight
+{
+    std::vector<gpu::HairLobe> lobes; // by falling energy; the last one has sharpness 0
+    std::uint32_t mapped = 0;         // so many of the first have shadow maps of their own
+};
 
 struct HairRenderSettings
 {
@@ -55,6 +64,7 @@ struct HairRenderSettings
     // Used when the opaque scene has none: towards the light, and its irradiance.
     glm::vec3 keyDirection = glm::vec3(0.4f, 0.8f, 0.5f);
     glm::vec3 keyIrradiance = glm::vec3(3.0f);
+    std::optional<HairDistantLight> distant; // in place of ambient and key light
 
     // What is behind the hair, linear [height, width]: a finished picture of the opaque scene, or,
     // when null, the constant colour with the opaque triangles in plain diffuse shading before it.

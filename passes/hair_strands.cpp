@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace strandlight {
 namespace {
@@ -9,6 +10,7 @@ namespace {
 constexpr float kLodWidth = 0.15f; // pixels
 constexpr std::uint32_t kLodMost = 16;
 constexpr std::uint32_t kLodFewestStrands = 4096;
+constexpr std::uint32_t kMostSparseStrands = 4096;
 
 std::uint32_t packAlbedo(const Scene& scene, std::size_t triangle)
 {
@@ -36,13 +38,55 @@ std::vector<glm::vec4> surfaceCorners(const Scene& scene)
     return corners;
 }
 
-std::vector<glm::uvec2> drawnSegments(const HairStrands& hair, std::uint32_t lod)
+// Every step-th strand with all of its points.
+HairStrands everyStrand(const HairStrands& hair, std::uint32_t step)
+{
+    HairStrands some;
+    some.firstPoint.push_back(0);
+    for (std::uint32_t strand = 0; strand < hair.strandCount(); strand += step) {
+        const std::uint32_t first = hair.firstPoint[strand];
+        const std::uint32_t last = hair.firstPoint[strand + 1];
+        some.points.insert(some.points.end(), &hair.points[first], &hair.points[last - 1] + 1);
+        some.radii.insert(some.radii.end(), &hair.radii[first], &hair.radii[last - 1] + 1);
+        some.colors.insert(some.colors.end(), &hair.colors[first], &hair.colors[last - 1] + 1);
+        some.firstPoint.push_back(std::uint32_t(some.points.size()));
+    }
+    return some;
+}
+
+// Of every step-th strand: first point, strand.
+std::vector<glm::uvec2> segmentsOf(const HairStrands& hair, std::uint32_t step)
 {
     std::vector<glm::uvec2> segments;
-    for (std::uint32_t strand = 0; strand < hair.strandCount(); strand += lod)
+    for (std::uint32_t strand = 0; strand < hair.strandCount(); strand += step)
         for (std::uint32_t p = hair.firstPoint[strand]; p + 1 < hair.firstPoint[strand + 1]; ++p)
             segments.emplace_back(p, strand);
     return segments;
+}
+
+Buffer uploadPoints(Context& context, const std::vector<glm::vec3>& xyz,
+                    const std::vector<float>* w, const std::string& name)
+{
+    std::vector<glm::vec4> values(xyz.size());
+    for (std::size_t i = 0; i < xyz.size(); ++i)
+        values[i] = glm::vec4(xyz[i], w ? (*w)[i] : 0.0f);
+    return Buffer::from(context, values, name);
+}
+
+void uploadSegments(Context& context, HairBuffers& buffers, const HairStrands& drawn,
+                    std::uint32_t allStrands)
+{
+    const std::vector<glm::uvec2> segments = segmentsOf(drawn, 1);
+    buffers.segments = Buffer::from(context, segments, "hair segments");
+    buffers.segmentCount = std::uint32_t(segments.size());
+    buffers.strandCount = drawn.strandCount();
+    buffers.widthScale = float(allStrands) / float(buffers.strandCount);
+
+    const std::uint32_t step = (drawn.strandCount() + kMostSparseStrands - 1) / kMostSparseStrands;
+    const std::vector<glm::uvec2> sparse = segmentsOf(drawn, step);
+    buffers.sparse = Buffer::from(context, sparse, "hair sparse segments");
+    buffers.sparseSegments = std::uint32_t(sparse.size());
+    buffers.sparseScale = float(allStrands) / float((drawn.strandCount() + step - 1) / step);
 }
 
 } // namespace
@@ -69,26 +113,14 @@ HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* o
                        std::span<const gpu::HairLight> lights, std::uint32_t lod)
 {
     HairBuffers buffers;
-    const std::size_t count = hair.points.size();
-    buffers.pointCount = std::uint32_t(count);
-    std::vector<glm::vec4> values(count);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = glm::vec4(hair.points[i], hair.radii[i]);
-    buffers.points = Buffer::from(context, values, "hair points");
-    const std::vector<glm::vec3> tangents = hairTangents(hair);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = glm::vec4(tangents[i], 0.0f);
-    buffers.tangents = Buffer::from(context, values, "hair tangents");
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = glm::vec4(hair.colors[i], 0.0f);
-    buffers.colors = Buffer::from(context, values, "hair colors");
-    buffers.shaded = Buffer(context, count * sizeof(glm::vec4), "hair shaded");
-
-    const std::vector<glm::uvec2> segments = drawnSegments(hair, lod);
-    buffers.segments = Buffer::from(context, segments, "hair segments");
-    buffers.segmentCount = std::uint32_t(segments.size());
-    buffers.strandCount = (hair.strandCount() + lod - 1) / lod;
-    buffers.widthScale = float(hair.strandCount()) / float(buffers.strandCount);
+    const HairStrands some = lod > 1 ? everyStrand(hair, lod) : HairStrands{};
+    const HairStrands& drawn = lod > 1 ? some : hair;
+    buffers.pointCount = std::uint32_t(drawn.points.size());
+    buffers.points = uploadPoints(context, drawn.points, &drawn.radii, "hair points");
+    buffers.tangents = uploadPoints(context, hairTangents(drawn), nullptr, "hair tangents");
+    buffers.colors = uploadPoints(context, drawn.colors, nullptr, "hair colors");
+    buffers.shaded = Buffer(context, drawn.points.size() * sizeof(glm::vec4), "hair shaded");
+    uploadSegments(context, buffers, drawn, hair.strandCount());
     if (opaque && !opaque->triangles.empty()) {
         buffers.surface = Buffer::from(context, surfaceCorners(*opaque), "hair occluders");
         const std::vector<glm::vec4> all(opaque->triangles.size() * 3, glm::vec4(1.0f));
@@ -96,6 +128,7 @@ HairBuffers uploadHair(Context& context, const HairStrands& hair, const Scene* o
         buffers.triangleCount = std::uint32_t(opaque->triangles.size());
     }
     buffers.lights = Buffer::from(context, lights, "hair lights");
+    buffers.lobes = Buffer::from(context, std::span<const gpu::HairLobe>(), "hair lobes");
     return buffers;
 }
 

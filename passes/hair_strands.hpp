@@ -28,12 +28,19 @@ struct HairBuffers
     Buffer surface;    // vec4 [triangles, 3, 2]; not valid without opaque triangles
     Buffer visibility; // vec4 [triangles, 3], 1 until the shading passes; beside surface
     Buffer lights;     // HairLight [lights]; one zeroed element without any
+    Buffer lobes;      // HairLobe [lobes]; the same
+    Buffer openness;   // vec4 [points], and
+    Buffer along;      // HairLight [mapped lobes, then directions of openness]; only with lobes
+    Buffer sparse;     // uvec2 [sparseSegments], of at most 4,096 strands, for openness
+    std::vector<gpu::HairLight> alongLights;
 
     std::uint32_t pointCount = 0;
     std::uint32_t segmentCount = 0;
     std::uint32_t strandCount = 0;   // drawn
     std::uint32_t triangleCount = 0; // opaque
     float widthScale = 1.0f;         // strands over drawn strands
+    std::uint32_t sparseSegments = 0;
+    float sparseScale = 1.0f; // strands over those of `sparse`
 };
 
 // Unit tangents towards the tip, [points]: central differences, one-sided at both ends.

@@ -4,8 +4,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "hair/light.glsl"
+#include "shared/sg.h"
+#include "shared/sg_diffuse.h"
 
 layout(binding = 1, scalar) readonly buffer Lights { HairLight lights[]; };
+layout(binding = 3, scalar) readonly buffer Lobes { HairLobe lobes[]; };
 layout(push_constant, scalar) uniform Push { HairOpaquePush push; };
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -21,6 +24,11 @@ void main()
         vec3 facing = hairLightIrradiance(lights[i], position, towards);
         facing *= i < kHairSurfaceLights ? lightShares[i] : 1.0;
         irradiance += facing * max(dot(normalize(normal), towards), 0.0);
+    }
+    for (uint i = 0u; i < push.lobeCount; ++i) {
+        HairLobe lobe = lobes[i];
+        irradiance += lobe.energy / sgIntegral(lobe.sharpness) *
+                      sgIrradiance(lobe.sharpness, dot(normalize(normal), lobe.axis));
     }
     color = vec4(albedo * irradiance / 3.14159265, 0.0);
 }

@@ -34,7 +34,7 @@ void main()
         vec3 single = hairScatter(tangent, towards, view, color, push.roughness, push.tilt);
         vec3 multiple = hairMultipleScatter(tangent, towards, view, color, visible);
         sum.rgb += irradiance * (single * visible + multiple);
-        sum.w += visible / float(push.lightCount);
+        sum.w += visible * push.share;
     }
     imageStore(shaded, int(point), sum);
 }

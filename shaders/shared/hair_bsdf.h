@@ -15,7 +15,10 @@
 STRANDLIGHT_SHARED_BEGIN
 
 STRANDLIGHT_CONST(float) kHairF0 = 0.046520569f; // ((1 - 1.55) / (1 + 1.55))^2
-// 1 / integral of exp(k (cos(phi) - 1)) over 2 pi, k = 3.65 and 17.
+// Azimuthal lobes exp(k (cos(phi) - 1)), about the far and the near side.
+STRANDLIGHT_CONST(float) kHairSharpnessTT = 3.65f;
+STRANDLIGHT_CONST(float) kHairSharpnessTRT = 17.0f;
+// 1 / integral over 2 pi.
 STRANDLIGHT_CONST(float) kHairNormTT = 0.73114621f;
 STRANDLIGHT_CONST(float) kHairNormTRT = 1.63245382f;
 
@@ -78,48 +81,76 @@ STRANDLIGHT_FN vec2 hairTilt(float sinO, float cosO, vec2 shift)
     return vec2(s, c);
 }
 
-// Radiance towards `view` for unit irradiance on a plane facing `light` (both unit, away from the fibre): the cosine
-// is included. `color` is the reflectance in [0, 1], tilt in radians.
-STRANDLIGHT_FN vec3 hairScatter(vec3 tangent, vec3 light, vec3 view, vec3 color, float roughness, float tilt)
+// Inclinations of light and view, and the azimuth between them.
+struct HairAngles
 {
-    float sinI = clamp(dot(tangent, light), -1.0f, 1.0f);
-    float sinO = clamp(dot(tangent, view), -1.0f, 1.0f);
+    float sinI;
+    float cosI;
+    float sinO;
+    float cosO;
+    float cosPhi;
+};
+
+STRANDLIGHT_FN HairAngles hairAngles(vec3 tangent, vec3 light, vec3 view)
+{
+    HairAngles a;
+    a.sinI = clamp(dot(tangent, light), -1.0f, 1.0f);
+    a.sinO = clamp(dot(tangent, view), -1.0f, 1.0f);
     vec3 acrossI = hairAcross(tangent, light);
     vec3 acrossO = hairAcross(tangent, view);
-    float cosI = min(length(acrossI), 1.0f);
-    float cosO = min(length(acrossO), 1.0f);
+    a.cosI = min(length(acrossI), 1.0f);
+    a.cosO = min(length(acrossO), 1.0f);
     // Along the fibre there is no azimuth: any will do.
-    float lengths = cosI * cosO;
-    float cosPhi = lengths > 1e-12f ? clamp(dot(acrossI, acrossO) / lengths, -1.0f, 1.0f) : 1.0f;
-    float cosHalfPhi = sqrt(max(0.5f + 0.5f * cosPhi, 0.0f));
+    float lengths = a.cosI * a.cosO;
+    a.cosPhi = lengths > 1e-12f ? clamp(dot(acrossI, acrossO) / lengths, -1.0f, 1.0f) : 1.0f;
+    return a;
+}
 
-    float cosD = max(cosO, 1e-2f);
+STRANDLIGHT_FN float hairCosHalf(float cosPhi)
+{
+    return sqrt(max(0.5f + 0.5f * cosPhi, 0.0f));
+}
+
+// The three lobes' sum. `azimuth` holds the densities of R, TT and TRT over the azimuth, `variance` their longitudinal
+// widths; `throughCosPhi` is the azimuth at which the light goes through the fibre.
+STRANDLIGHT_FN vec3 hairLobeSum(HairAngles a, float throughCosPhi, vec3 azimuth, vec3 variance, vec3 color, float tilt)
+{
+    float cosD = max(a.cosO, 1e-2f);
     float fresnel = hairMeanFresnel(cosD);
     vec3 base = clamp(color, vec3(1e-5f), vec3(1.0f));
     // Offset of the ray that leaves through the fibre, and how much pigment it meets (Karis).
     float bend = 1.0f / (1.19f / cosD + 0.36f * cosD);
-    float h = clamp((1.0f + bend * (0.6f - 0.8f * cosPhi)) * cosHalfPhi, 0.0f, 1.0f);
+    float h = clamp((1.0f + bend * (0.6f - 0.8f * throughCosPhi)) * hairCosHalf(throughCosPhi), 0.0f, 1.0f);
     float inside = sqrt(max(1.0f - h * h * bend * bend, 0.0f));
     vec3 throughOnce = pow(base, vec3(inside / (2.0f * cosD)));
     vec3 throughTwice = pow(base, vec3(0.8f / cosD));
 
-    float variance = hairVariance(roughness);
     float st = sin(tilt);
     float ct = cos(tilt);
-    vec2 r = hairTilt(sinO, cosO, vec2(-2.0f * st * ct, ct * ct - st * st)); // -2 tilt
-    vec2 tt = hairTilt(sinO, cosO, vec2(st, ct));                            // + tilt
     float s2 = 2.0f * st * ct;
     float c2 = ct * ct - st * st;
-    vec2 trt = hairTilt(sinO, cosO, vec2(2.0f * s2 * c2, c2 * c2 - s2 * s2)); // + 4 tilt
+    vec2 r = hairTilt(a.sinO, a.cosO, vec2(-s2, c2));                                 // -2 tilt
+    vec2 tt = hairTilt(a.sinO, a.cosO, vec2(st, ct));                                 // + tilt
+    vec2 trt = hairTilt(a.sinO, a.cosO, vec2(2.0f * s2 * c2, c2 * c2 - s2 * s2));     // + 4 tilt
 
-    vec3 sum = vec3(fresnel * 0.25f * cosHalfPhi * hairLongitudinal(sinI, cosI, r.x, r.y, variance));
+    vec3 sum = vec3(fresnel * azimuth.x * hairLongitudinal(a.sinI, a.cosI, r.x, r.y, variance.x));
     float through = (1.0f - fresnel) * (1.0f - fresnel);
-    sum += throughOnce * (through * kHairNormTT * exp(-3.65f * cosPhi - 3.65f) *
-                          hairLongitudinal(sinI, cosI, tt.x, tt.y, 0.25f * variance));
+    sum += throughOnce * (through * azimuth.y * hairLongitudinal(a.sinI, a.cosI, tt.x, tt.y, variance.y));
     // TRT and all higher orders: a geometric series in fresnel.
-    sum += throughTwice * ((1.0f - fresnel) * fresnel * kHairNormTRT * exp(17.0f * cosPhi - 17.0f) *
-                           hairLongitudinal(sinI, cosI, trt.x, trt.y, 4.0f * variance));
+    sum += throughTwice * ((1.0f - fresnel) * fresnel * azimuth.z *
+                           hairLongitudinal(a.sinI, a.cosI, trt.x, trt.y, variance.z));
     return sum;
+}
+
+// Radiance towards `view` for unit irradiance on a plane facing `light` (both unit, away from the fibre): the cosine
+// is included. `color` is the reflectance in [0, 1], tilt in radians.
+STRANDLIGHT_FN vec3 hairScatter(vec3 tangent, vec3 light, vec3 view, vec3 color, float roughness, float tilt)
+{
+    HairAngles a = hairAngles(tangent, light, view);
+    vec3 azimuth = vec3(0.25f * hairCosHalf(a.cosPhi), kHairNormTT * exp(-kHairSharpnessTT * (a.cosPhi + 1.0f)),
+                        kHairNormTRT * exp(kHairSharpnessTRT * (a.cosPhi - 1.0f)));
+    float variance = hairVariance(roughness);
+    return hairLobeSum(a, a.cosPhi, azimuth, vec3(variance, 0.25f * variance, 4.0f * variance), color, tilt);
 }
 
 // Light that reaches the fibre by way of others: Karis's stand-in, a wrapped diffuse term about the fibre's side that

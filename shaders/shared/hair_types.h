@@ -3,6 +3,7 @@
 //   tangents rgba32f [points]    unit tangent towards the tip
 //   colors   rgba32f [points]    linear albedo
 //   shaded   rgba32f [points]    radiance towards the camera, share of the lights that arrives
+//   openness rgba32f [points]    first moment and mean of the visibility over the sphere
 //   segments rg32ui  [segments]  first of the segment's two points, strand
 //   surface  rgba32f [opaque triangles, 3, 2]  position, albedo as unorm bytes | unit normal, 0
 //   visibility rgba32f [opaque triangles, 3]   share of lights 0 to 3 that hair lets through
@@ -39,6 +40,16 @@ struct HairOpaquePush
     vec2 jitter;
     vec3 ambient;
     uint lightCount;
+    uint lobeCount;
+};
+
+// A distant lobe of light; the last of a list has sharpness 0: what is the same from everywhere.
+struct HairLobe
+{
+    vec3 axis; // unit, at the light
+    float sharpness;
+    vec3 energy; // radiance over the lobe, W/m^2 on a plane that faces a sharp one
+    float share; // of all illumination
 };
 
 // Point and spot lights have a position, directional and spot lights a direction (shared numbering of light_types.h).
@@ -65,6 +76,31 @@ struct HairShadePush
     uint light;       // index; lightCount and more: ambient alone
     uint lightCount;
     uint first;       // 1: starts from the ambient term, 0: adds to `shaded`
+    uint shadowSize;
+    float share;      // of this light in the illumination
+};
+
+// Directions in which the visibility of strand points is taken: the corners of a cube, over which means and first
+// moments are exact for visibilities that are linear in the direction.
+STRANDLIGHT_CONST(uint) kHairOpenDirections = 8u;
+
+struct HairOpenPush
+{
+    uint pointCount;
+    uint light;      // of the shadow map
+    uint first;      // 1: starts anew, 0: adds to `openness`
+    uint shadowSize;
+};
+
+struct HairLobePush
+{
+    vec3 eye;
+    float roughness;
+    float tilt;      // radians
+    uint pointCount;
+    uint lobe;       // the first one
+    uint lobeCount;  // so many from there
+    uint first;      // 1: starts anew, 0: adds to `shaded`
     uint shadowSize;
 };
 
