@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/scene/mesh_builder.hpp"
+#include "engine/scene/procedural.hpp"
 
 namespace strandlight {
 
@@ -62,6 +63,25 @@ Scene headScene()
     // Irradiance pi makes a white Lambert surface that faces the light as bright as 1.
     scene.lights = {directional({-0.5f, -0.8f, -1.0f}, 3.1415927f),
                     directional({0.4f, -0.5f, 1.0f}, 2.0f)};
+    return scene;
+}
+
+Scene buildBustScene()
+{
+    Scene scene = buildRoomScene();
+    const Scene head = headScene();
+    const std::uint32_t firstVertex = std::uint32_t(scene.vertices.size());
+    const std::uint32_t firstMaterial = std::uint32_t(scene.materials.size());
+    for (Vertex vertex : head.vertices) {
+        vertex.position += kBustPlace;
+        scene.vertices.push_back(vertex);
+    }
+    for (const glm::uvec3& triangle : head.triangles)
+        scene.triangles.push_back(triangle + firstVertex);
+    for (const std::uint32_t material : head.triangleMaterials)
+        scene.triangleMaterials.push_back(material + firstMaterial);
+    scene.materials.insert(scene.materials.end(), head.materials.begin(), head.materials.end());
+    scene.name = "bust";
     return scene;
 }
 

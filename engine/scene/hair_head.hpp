@@ -22,4 +22,8 @@ float lowestHeadLevel(glm::vec3 a, glm::vec3 b);
 // key light and a rim light. The neck is no obstacle to grooms.
 Scene headScene();
 
+// The furnished room with the head in it at kBustPlace, lit by the room's lamp alone.
+inline constexpr glm::vec3 kBustPlace{0.0f, 1.3f, 0.6f};
+Scene buildBustScene();
+
 } // namespace strandlight

@@ -5,6 +5,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/scene/gltf_loader.hpp"
+#include "engine/scene/hair_head.hpp"
 #include "engine/scene/procedural.hpp"
 
 namespace strandlight {
@@ -36,13 +37,15 @@ Scene loadScene(const std::string& pathOrBuiltin)
     const std::string_view name = std::string_view(pathOrBuiltin).substr(kPrefix.size());
     if (name == "room")
         return buildRoomScene();
+    if (name == "bust")
+        return buildBustScene();
     if (name == "box")
         return buildDarkBoxScene();
     if (name == kFurnace || name.starts_with("furnace:"))
         return buildFurnace(name.substr(kFurnace.size()));
     throw Error("'" + pathOrBuiltin +
-                "' is not a built-in scene: there are builtin:room, builtin:furnace[:albedo] and "
-                "builtin:box");
+                "' is not a built-in scene: there are builtin:room, builtin:bust, "
+                "builtin:furnace[:albedo] and builtin:box");
 }
 
 } // namespace strandlight

@@ -11,7 +11,7 @@
 #include "passes/hair_network.hpp"
 #include "passes/hair_render.hpp"
 #include "samples/strandlight/commands.hpp"
-#include "samples/strandlight/hair_options.hpp"
+#include "samples/strandlight/hair_surroundings.hpp"
 #include "samples/strandlight/outputs.hpp"
 
 namespace strandlight::cli {
@@ -124,6 +124,8 @@ Json describe(const std::string& command, const Options& o, const Context& conte
     Json json = describeRun(command, &context);
     json["settings"] = {{"hair", o.source.hair},
                         {"scene", o.source.scene},
+                        {"bake", o.source.bake},
+                        {"environment", o.source.environment},
                         {"groom", describeGroom(o.source.groom)},
                         {"strands", hair.strandCount()},
                         {"segments", hair.segmentCount()},
@@ -175,15 +177,24 @@ int run(const std::string& command, Options& o)
     o.settings.width = size.width;
     o.settings.height = size.height;
     const HairStrands hair = openHair(o.source);
-    const std::optional<Scene> opaque = openOpaque(o.source);
+    const HairSurroundings around = openSurroundings(o.source, hair);
+    o.settings.distant = around.distant;
     const Camera camera =
         o.view.camera.empty() ? hairCamera(hair) : chooseCamera(Scene{}, o.view.camera);
     Context context = openDevice(o.device);
     std::optional<HairNetwork> network = openNetwork(context, o);
     o.settings.network = network ? &*network : nullptr;
 
-    const HairFrame frame =
-        renderHair(context, hair, opaque ? &*opaque : nullptr, camera, o.settings);
+    HairFrame behind; // its record alone
+    CpuImage background;
+    if (around.bake) {
+        background = renderBehind(context, around, camera, o.settings, behind);
+        o.settings.background = &background;
+    }
+    HairFrame frame =
+        renderHair(context, hair, around.opaque ? &*around.opaque : nullptr, camera, o.settings);
+    frame.timings.insert(frame.timings.begin(), behind.timings.begin(), behind.timings.end());
+    frame.skipped.insert(frame.skipped.begin(), behind.skipped.begin(), behind.skipped.end());
     throwIfInterrupted();
     for (const std::string& output : o.view.outputs)
         writePicture(output, frame.radiance, o.view.exposure);
@@ -229,8 +240,11 @@ Command addHairRender(CLI::App& parent)
                     "Draw every K-th strand K times wider; auto: by projected width")
         ->type_name("auto|K")
         ->capture_default_str();
-    addExamples(*app, "  strandlight hair render builtin:wavy -o wavy.png --stats\n"
-                      "  strandlight hair render mohawk.tfx -o mohawk.png --samples 16 --lod 2");
+    addExamples(
+        *app,
+        "  strandlight hair render builtin:wavy -o wavy.png --stats\n"
+        "  strandlight hair render builtin:wavy --scene builtin:bust --bake bust.sgl -o room.png\n"
+        "  strandlight hair render mohawk.tfx -o mohawk.png --samples 16 --lod 2");
     return {app, [o] {
                 o->settings.frames = framesOf(o->samples, "--samples");
                 o->settings.filter = filterOf(*o);

@@ -1,10 +1,11 @@
 #include "samples/strandlight/hair_options.hpp"
 
+#include <cmath>
+
 #include "engine/base/error.hpp"
 #include "engine/scene/grooms.hpp"
 #include "engine/scene/hair_head.hpp"
 #include "engine/scene/hair_loader.hpp"
-#include "engine/scene/scene_loader.hpp"
 
 namespace strandlight::cli {
 
@@ -43,6 +44,19 @@ HairStrands openFile(const std::string& path, const GroomOptions& o)
     return o.strands ? selectStrands(strands, *o.strands) : strands;
 }
 
+glm::vec3 parseOffset(const std::string& text)
+{
+    const std::vector<std::string> parts = CLI::detail::split(text, ',');
+    glm::vec3 offset(0.0f);
+    bool good = parts.size() == 3;
+    for (int c = 0; good && c < 3; ++c)
+        good = CLI::detail::lexical_cast(parts[std::size_t(c)], offset[c]) &&
+               std::abs(offset[c]) <= 1e4f;
+    if (!good)
+        throw Error("--hair-offset: '" + text + "' is not X,Y,Z in metres");
+    return offset;
+}
+
 template <class T>
 void addGiven(CLI::App& app, const std::string& name, std::optional<T>& value,
               const std::string& meaning, T lowest, T highest)
@@ -60,6 +74,17 @@ void addHairOptions(CLI::App& app, HairOptions& o)
     app.add_option("HAIR", o.hair, ".tfx, .hair or builtin:" + grooms)->required()->type_name("");
     app.add_option("--scene", o.scene, "What hides and lights the hair; default: a head for grooms")
         ->type_name("SCENE");
+    app.add_option("--bake", o.bake, "Of that scene, .sgl: lights the hair, and is behind it")
+        ->type_name("FILE");
+    app.add_option("--env", o.environment, "Distant environment, lat-long .hdr or .exr")
+        ->type_name("FILE");
+    app.add_option("--hair-scale", o.scale, "Factor on the hair's size, widths too")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(1e-3f, 1e3f));
+    app.add_option("--hair-offset", o.offset,
+                   "Then moved by; default: onto the head of builtin:bust, else not at all")
+        ->type_name("X,Y,Z");
     addGiven(app, "--strands", o.groom.strands, "So many", 1u, kMostGroomStrands);
     addGiven(app, "--segments", o.groom.segments, "Of a groom's strand", 1u, kMostGroomSegments);
     addGiven(app, "--length", o.groom.length, "Of a groom in metres", 0.005f, 2.0f);
@@ -74,23 +99,24 @@ void addHairOptions(CLI::App& app, HairOptions& o)
     addGiven(app, "--seed", o.groom.seed, "Of groom and colours", 0u, ~0u);
 }
 
-HairStrands openHair(const HairOptions& o)
+bool isGroom(const HairOptions& o)
 {
-    const bool isGroom = o.hair.starts_with(kBuiltin);
-    HairStrands strands =
-        isGroom ? openGroom(o.hair.substr(kBuiltin.size()), o.groom) : openFile(o.hair, o.groom);
-    for (float& radius : strands.radii)
-        radius *= o.width;
-    return strands;
+    return o.hair.starts_with(kBuiltin);
 }
 
-std::optional<Scene> openOpaque(const HairOptions& o)
+HairStrands openHair(const HairOptions& o)
 {
-    if (!o.scene.empty())
-        return loadScene(o.scene);
-    if (o.hair.starts_with(kBuiltin))
-        return headScene();
-    return std::nullopt;
+    HairStrands strands =
+        isGroom(o) ? openGroom(o.hair.substr(kBuiltin.size()), o.groom) : openFile(o.hair, o.groom);
+    const bool onBust = isGroom(o) && o.scene == "builtin:bust";
+    const glm::vec3 offset = !o.offset.empty() ? parseOffset(o.offset)
+                             : onBust          ? kBustPlace
+                                               : glm::vec3(0.0f);
+    for (float& radius : strands.radii)
+        radius *= o.width * o.scale;
+    for (glm::vec3& point : strands.points)
+        point = point * o.scale + offset;
+    return strands;
 }
 
 } // namespace strandlight::cli

@@ -27,12 +27,15 @@ struct HairOptions
     std::string hair;
     std::string scene;
     GroomOptions groom;
+    std::string bake;
+    std::string environment;
     float width = 1.0f; // factor on all widths
+    float scale = 1.0f; // of the hair, before it is moved by
+    std::string offset; // metres
 };
 void addHairOptions(CLI::App& app, HairOptions& options);
 HairStrands openHair(const HairOptions& options); // throws FileError or Error
 
-// What stands in front of and behind the hair: the head under a groom, nothing under a file.
-std::optional<Scene> openOpaque(const HairOptions& options);
+bool isGroom(const HairOptions& options);
 
 } // namespace strandlight::cli

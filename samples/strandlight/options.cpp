@@ -80,7 +80,7 @@ Context openDevice(const DeviceOptions& options)
 void addSceneOptions(CLI::App& app, SceneOptions& options)
 {
     app.add_option("SCENE", options.scene,
-                   ".gltf, .glb, builtin:room, builtin:box or builtin:furnace[:ALBEDO]")
+                   ".gltf, .glb, builtin:room, builtin:bust, builtin:box or builtin:furnace[:ALBEDO]")
         ->required()
         ->type_name("");
     app.add_option("--env", options.environment, "Distant environment, lat-long .hdr or .exr")

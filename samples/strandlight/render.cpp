@@ -7,10 +7,9 @@
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/gpu_scene.hpp"
-#include "passes/bake_identity.hpp"
 #include "passes/render_frame.hpp"
-#include "passes/sgl_file.hpp"
 #include "samples/strandlight/commands.hpp"
+#include "samples/strandlight/open_bake.hpp"
 #include "samples/strandlight/outputs.hpp"
 
 namespace strandlight::cli {
@@ -92,17 +91,6 @@ void printStats(const Context& context, const FrameResult& frame)
                 bytesText(context.peakBytesAllocated()).c_str());
 }
 
-// Another scene's bake has its texels elsewhere: refused before any work.
-void checkBakeOfScene(const Options& o, const SgBake& bake, const Scene& scene)
-{
-    if (bake.info.geometryHash != hashGeometry(scene))
-        throw FileError(o.bake, "", "was baked from other geometry (" + bake.info.scene + ")");
-    if (bake.info.environmentHash != hashEnvironment(scene))
-        throw FileError(o.bake, "",
-                        bake.environment ? "was baked with another environment: give it with --env"
-                                         : "was baked without an environment");
-}
-
 int run(Options& o)
 {
     const auto start = std::chrono::steady_clock::now();
@@ -115,9 +103,8 @@ int run(Options& o)
     o.settings.view = kViews.at(o.viewName);
     o.settings.specular = kSpecularModels.at(o.specularName);
     o.settings.diffuse = kDiffuseModels.at(o.diffuseName);
-    const SgBake bake = loadSgl(o.bake);
     const Scene scene = openScene(o.scene);
-    checkBakeOfScene(o, bake, scene);
+    const SgBake bake = openBake(o.bake, scene);
     const Camera camera = chooseCamera(scene, o.view.camera);
     Context context = openDevice(o.device);
 

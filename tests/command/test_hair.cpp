@@ -110,3 +110,41 @@ TEST_CASE("hair of a file is drawn, and its broken forms are refused before any 
     checkFails(runCommand({"hair", "-o", none}), "");
     CHECK(fileBytes(none).empty());
 }
+
+TEST_CASE("hair in a baked scene: lit by the bake, before its picture; errors are one line")
+{
+    const TemporaryFolder folder;
+    const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+    const std::string none = path("none.png");
+    checkFails(runCommand(render(none, {"--bake", "x.sgl"})), "--scene");
+    checkFails(runCommand(render(none, {"--hair-offset", "1,2"})), "X,Y,Z");
+    checkFails(runCommand(render(none, {"--env", path("no.hdr")})), "no.hdr");
+    const CommandResult bake =
+        runCommand({"bake", "builtin:furnace:0.5", "-o", path("f.sgl"), "--atlas", "16",
+                    "--lightfield", "8", "--spp", "2", "--steps", "40"});
+    CAPTURE(bake.errors);
+    REQUIRE(bake.exitCode == 0);
+    checkFails(runCommand(render(none, {"--scene", "builtin:box", "--bake", path("f.sgl")})),
+               "other geometry");
+    CHECK(fileBytes(none).empty());
+
+    // Within the furnace all is as bright as 1 / (1 - 0.5), and no lamp is needed.
+    const CommandResult drawn = runCommand(
+        render(path("in.exr"), {"--scene", "builtin:furnace:0.5", "--bake", path("f.sgl"),
+                                "--hair-scale", "0.5", "--hair-offset", "0.1,0,0", "--camera",
+                                "0.1,0,0.6,0.1,0,0", "--json", path("in.json")}));
+    CAPTURE(drawn.errors);
+    REQUIRE(drawn.exitCode == 0);
+    const CpuImage picture = loadImage(path("in.exr"));
+    CHECK(picture.at(0, 0).x == doctest::Approx(2.0).epsilon(0.05));
+    const glm::vec4& hair = picture.at(24, 16);
+    CHECK(hair.x > 0.02f); // brown hair in bright light
+    CHECK(hair.x < 1.8f);
+    const nlohmann::json result = readJson(path("in.json"))["result"];
+    std::string passes;
+    for (const auto& pass : result["passes"])
+        passes += pass["name"].get<std::string>() + ";";
+    CHECK(passes.find("sg diffuse") != std::string::npos);
+    CHECK(passes.find("hair lobes") != std::string::npos);
+    CHECK(passes.find("hair shading 0") == std::string::npos);
+}
