@@ -39,7 +39,7 @@ BufferId addHairShadingPasses(RenderGraph& graph, HairBuffers& buffers,
     gpu::HairShadePush push{};
     push.eye = view.eye;
     push.roughness = settings.roughness;
-    push.ambient = settings.ambient;
+    push.ambient = settings.distant ? glm::vec3(0.0f) : settings.ambient; // else a lobe
     push.tilt = glm::radians(settings.tiltDegrees);
     push.pointCount = buffers.pointCount;
     push.lightCount = std::uint32_t(lights.size());
@@ -88,7 +88,7 @@ HairSampleIds addHairOccludersPass(RenderGraph& graph, HairBuffers& buffers, con
         ids.color = pass.color(graph.createImage("hair color", desc), {true, {clear, 0.0f}});
     ids.depth = pass.depth(graph.createImage("hair depth", desc.with(Format::Depth32F)));
     gpu::HairOpaquePush push = opaquePush(view);
-    push.ambient = settings.ambient;
+    push.ambient = settings.distant ? glm::vec3(0.0f) : settings.ambient; // else a lobe
     push.lightCount = lightCount;
     push.lobeCount = settings.distant ? std::uint32_t(settings.distant->lobes.size()) : 0u;
     drawOpaque(graph, pass, buffers, push,
