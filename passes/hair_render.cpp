@@ -107,6 +107,7 @@ public:
         view_.width = settings.width;
         view_.height = settings.height;
         view_.alpha = settings.alpha;
+        view_.jitter = settings.lensShift;
         depth_ = hairDepthScale(hair, camera);
         planShadows(hair);
     }
@@ -143,7 +144,8 @@ public:
         view.trueWidth = settings_.mode == HairMode::Reference;
         for (std::uint32_t i = 0; i < settings_.frames; ++i) {
             view.frame = settings_.frameIndex + i;
-            view.jitter = settings_.frames > 1 ? hairFrameJitter(i) : glm::vec2(0.0f);
+            view.jitter =
+                view_.jitter + (settings_.frames > 1 ? hairFrameJitter(i) : glm::vec2(0.0f));
             RenderGraph graph(context_);
             graph.setTimings(true);
             const HairSampleIds samples = addHairStrandsPass(

@@ -49,10 +49,11 @@ struct HairRenderSettings
     std::uint32_t height = 384;
     HairMode mode = HairMode::Stochastic;
     std::uint32_t frames = 1; // averaged; four samples a pixel each, jittered when more than one
-    std::uint32_t frameIndex = 0; // of the first frame: another index is another noise
-    float alpha = 1.0f;           // of a strand that covers its pixel, in [0, 1]
-    std::uint32_t lod = 0;        // draw every lod-th strand lod times wider; 0: by projected width
-    bool shadows = true;          // lights' shadow maps of hair and opaque geometry
+    std::uint32_t frameIndex = 0;          // of the first frame: another index is another noise
+    glm::vec2 lensShift = glm::vec2(0.0f); // pixels by which the hair moves in the picture
+    float alpha = 1.0f;                    // of a strand that covers its pixel, in [0, 1]
+    std::uint32_t lod = 0; // draw every lod-th strand lod times wider; 0: by projected width
+    bool shadows = true;   // lights' shadow maps of hair and opaque geometry
     std::uint32_t shadowSize = 1024; // texels a side, four samples each
     HairFilter filter = HairFilter::Average;
     HairNetwork* network = nullptr; // of HairFilter::UNet; outlives renderHair

@@ -62,6 +62,7 @@ Command addBenchHairFilter(CLI::App& bench);
 Command addBenchGi(CLI::App& bench);
 Command addBenchAll(CLI::App& bench);
 Command addBenchPage(CLI::App& bench);
+Command addBenchHair(CLI::App& bench);
 
 // What they run; the result is the exit code.
 int benchKernels(const BenchOptions& options);
