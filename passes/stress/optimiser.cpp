@@ -113,7 +113,10 @@ Sums sumOnDevice(Context& context, const std::vector<float>& values)
 {
     const auto count = std::uint32_t(values.size());
     RenderGraph graph(context);
-    const TensorDesc desc{1, 1, 1, count};
+    std::uint32_t width = std::min(count, 32768u); // sides are limited: the widest that divides
+    while (width > 1 && count % width != 0)
+        --width;
+    const TensorDesc desc{1, 1, count / std::max(width, 1u), width};
     const std::vector<float> zeros(values.size(), 0.0f), two(2, 0.0f);
     const TensorId x = uploadTensor(graph, "x", desc, values),
                    zero = uploadTensor(graph, "0", desc, zeros);
