@@ -1,5 +1,6 @@
 #include "compute_nn/unet_tiles.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "kernels.gen.hpp"

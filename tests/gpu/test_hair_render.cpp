@@ -136,12 +136,15 @@ TEST_CASE("hair: the same frame twice is the same bytes, another frame is not")
     CHECK(std::memcmp(first.pixels.data(), render().pixels.data(), bytes) != 0);
 }
 
-TEST_CASE("hair: without strands there is no pass and no pipeline")
+TEST_CASE("hair: without strands there is no pass, no pipeline and no buffer")
 {
     Context context = Context::headless({.validation = true});
+    const std::uint64_t bytes = context.bytesAllocated(), peak = context.peakBytesAllocated();
     HairRenderSettings settings = plainSettings(16);
     const HairFrame frame = renderHair(context, HairStrands{}, nullptr, pixelCamera(16), settings);
     CHECK(context.pipelinesCreated() == 0);
+    CHECK(context.bytesAllocated() == bytes);
+    CHECK(context.peakBytesAllocated() == peak);
     CHECK(frame.timings.empty());
     CHECK(frame.drawnSegments == 0);
     REQUIRE(frame.skipped.size() == 1);
