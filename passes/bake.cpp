@@ -12,6 +12,7 @@
 #include "passes/light_field_baselines.hpp"
 #include "passes/lightfield_capture.hpp"
 #include "passes/sg_fit.hpp"
+#include "passes/sg_prune.hpp"
 
 namespace strandlight {
 
@@ -33,6 +34,8 @@ FitSettings fitSettings(const BakeSettings& settings, LightSet light)
     fit.lobes = light == LightSet::Radiance ? settings.lobes : settings.environmentLobes;
     fit.steps = settings.steps;
     fit.seed = settings.seed;
+    fit.lobeError = settings.lobeError;
+    fit.lobeTile = settings.lobeTile;
     return fit;
 }
 
@@ -110,6 +113,16 @@ SgField fit(Context& context, const FitProblem& problem, const FitSettings& sett
     return fitLobes(context, problem, settings, nullptr, &checkpoint);
 }
 
+void countLobes(const FitProblem& problem, const SgField& field, BakeStatistics& numbers)
+{
+    FitStatistics counts;
+    countDropped(problem, field, counts);
+    numbers.lobes += field.lobes.size();
+    numbers.keptLobes += field.keptCount();
+    numbers.tiles += counts.tiles;
+    numbers.darkTiles += counts.darkTiles;
+}
+
 double rmseAtTexels(const FitProblem& problem, const SgField& field)
 {
     const FitReport report =
@@ -157,6 +170,7 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
                             ? *saver.state.radiance
                             : fit(context, problem, wanted, saver.state.radianceFit, saver);
         numbers.radianceRmse = rmseAtTexels(problem, bake.radiance);
+        countLobes(problem, bake.radiance, numbers);
     }
     // Lobes of the distant environment, as far as it is seen
     if (!images.environment.empty()) {
@@ -168,6 +182,7 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
             buildFitProblem(bake.atlas, images, LightSet::Environment, wanted);
         bake.environment = fit(context, problem, wanted, saver.state.environmentFit, saver);
         numbers.environmentRmse = rmseAtTexels(problem, *bake.environment);
+        countLobes(problem, *bake.environment, numbers);
     }
     numbers.fitSeconds = secondsSince(start);
 

@@ -24,6 +24,10 @@ struct BakeSettings
     std::uint32_t steps = 600; // of the fit
     std::uint32_t seed = 1;
     FitMode fit = FitMode::Direct;
+    // Lobes are dropped, tile by tile, while the fit's error grows by no more than this fraction;
+    // 0: every texel keeps all (passes/sg_prune.hpp).
+    float lobeError = 0.0f;
+    std::uint32_t lobeTile = FitSettings{}.lobeTile; // texels a side that keep the same lobes
     // Where work in progress is kept, and continued from when `resume` is set. Empty: nowhere.
     // An interrupted bake that is resumed gives the same bytes as one that was not.
     std::filesystem::path checkpoint;
@@ -38,7 +42,11 @@ struct BakeStatistics
     double atlasSeconds = 0.0;
     double captureSeconds = 0.0;
     double fitSeconds = 0.0;
-    double radianceRmse = 0.0; // light field against its lobes, at texels
+    std::uint64_t lobes = 0; // of both sets, if all were kept
+    std::uint64_t keptLobes = 0;
+    std::uint64_t tiles = 0;     // of both sets; 0 when nothing was to be dropped
+    std::uint64_t darkTiles = 0; // that keep no lobe
+    double radianceRmse = 0.0;   // light field against its lobes, at texels
     double environmentRmse = 0.0;
     std::uint64_t peakDeviceBytes = 0;
 };

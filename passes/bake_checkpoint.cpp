@@ -10,7 +10,7 @@ namespace strandlight {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x43424C53; // "SLBC"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 void writeFit(ByteWriter& out, const std::optional<FitState>& fit)
 {
@@ -50,6 +50,8 @@ void saveCheckpoint(const std::filesystem::path& path, const BakeCheckpoint& che
     if (checkpoint.radiance) {
         body.value(checkpoint.radiance->lobeCount);
         body.array(checkpoint.radiance->lobes);
+        body.value(checkpoint.radiance->tileSize);
+        body.array(checkpoint.radiance->kept);
     }
     writeFit(body, checkpoint.radianceFit);
     writeFit(body, checkpoint.environmentFit);
@@ -87,6 +89,8 @@ BakeCheckpoint loadCheckpoint(const std::filesystem::path& path, std::uint64_t s
         SgField field;
         field.lobeCount = in.value<std::uint32_t>();
         field.lobes = in.array<SgLobe>();
+        field.tileSize = in.value<std::uint32_t>();
+        field.kept = in.array<std::uint32_t>();
         out.radiance = std::move(field);
     }
     out.radianceFit = readFit(in);

@@ -64,8 +64,9 @@ std::uint64_t hashBake(const Scene& scene, const BakeSettings& s)
     hash.value(hashScene(scene));
     for (const std::uint32_t v :
          {s.atlasResolution, s.lightfieldSize, s.lobes, s.environmentLobes, s.samplesPerDirection,
-          s.bounces, s.steps, s.seed, std::uint32_t(s.fit)})
+          s.bounces, s.steps, s.seed, std::uint32_t(s.fit), s.lobeTile})
         hash.value(v);
+    hash.value(s.lobeError);
     return hash.result();
 }
 

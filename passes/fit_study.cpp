@@ -1,5 +1,6 @@
 #include "passes/fit_study.hpp"
 
+#include <cstdio>
 #include <utility>
 
 #include "engine/base/progress.hpp"
@@ -34,6 +35,16 @@ FitReport studyFits(Context& context, const Scene& scene, const FitStudySettings
         SgField lobes = fitLobes(context, problem, fit, &statistics);
         models.push_back(
             freeSgModel(problem, std::move(lobes), toString(mode), statistics.seconds));
+    }
+    for (const float lobeError : settings.lobeErrors) {
+        FitSettings fit = settings.fit;
+        fit.mode = FitMode::Direct;
+        fit.lobeError = lobeError;
+        FitStatistics statistics;
+        SgField lobes = fitLobes(context, problem, fit, &statistics);
+        char name[32];
+        std::snprintf(name, sizeof(name), "direct, %g dropped", double(lobeError));
+        models.push_back(freeSgModel(problem, std::move(lobes), name, statistics.seconds));
     }
     return compareFits(problem, probes, models);
 }

@@ -253,8 +253,8 @@ LightFieldModel freeSgModel(const FitProblem& problem, SgField field, std::strin
 {
     LightFieldModel out;
     out.name = std::move(name);
-    out.bytesPerTexel =
-        double(field.lobeCount) * 12.0; // axis octahedral 2 x 16 bits, the rest fp16
+    out.bytesPerTexel = double(field.keptCount()) / double(std::max(problem.texelCount(), 1u)) *
+                        12.0; // axis octahedral 2 x 16 bits, the rest fp16
     out.seconds = seconds;
     out.lobes = std::make_shared<SgField>(std::move(field));
     out.reconstruct = [&problem, shared = out.lobes](const glm::uvec4& texels,
@@ -262,19 +262,13 @@ LightFieldModel freeSgModel(const FitProblem& problem, SgField field, std::strin
                                                      std::vector<glm::vec3>& image) {
         std::fill(image.begin(), image.end(), glm::vec3(0.0f));
         for (std::uint32_t k = 0; k < shared->lobeCount; ++k) {
-            glm::vec3 axis(0.0f), amplitude(0.0f);
-            float logSharpness = 0.0f;
-            for (int c = 0; c < 4; ++c) {
-                const SgLobe& lobe = shared->lobes[std::size_t(texels[c]) * shared->lobeCount + k];
-                axis += weights[c] * lobe.axis;
-                logSharpness += weights[c] * lobe.logSharpness;
-                amplitude += weights[c] * lobe.amplitude;
-            }
-            axis = gpu::safeNormalize(axis, glm::vec3(0.0f, 0.0f, 1.0f));
-            const float sharpness = std::exp(logSharpness);
+            const SgLobe lobe = interpolateLobe(*shared, texels, weights, k);
+            if (lobe.amplitude == glm::vec3(0.0f))
+                continue;
+            const float sharpness = std::exp(lobe.logSharpness);
             for (std::size_t d = 0; d < image.size(); ++d)
-                image[d] +=
-                    amplitude * gpu::sgEvaluate(glm::vec3(problem.directions[d]), axis, sharpness);
+                image[d] += lobe.amplitude *
+                            gpu::sgEvaluate(glm::vec3(problem.directions[d]), lobe.axis, sharpness);
         }
     };
     return out;

@@ -1,6 +1,8 @@
 #include "passes/render_frame.hpp"
 
+#include <initializer_list>
 #include <optional>
+#include <utility>
 
 #include "engine/base/error.hpp"
 #include "passes/downsample.hpp"
@@ -17,32 +19,54 @@ struct FramePlan
 {
     bool diffuse = false;
     bool specular = false;
-    bool environment = false;
     bool punctual = false;
+    bool environmentDiffuse = false;
+    bool environmentSpecular = false;
+    bool sky = false;
     bool emission = false;
     bool inspect = false; // lobes or atlas
+
+    bool anySpecular() const { return specular || environmentSpecular; }
+    bool anyEnvironment() const { return environmentDiffuse || environmentSpecular || sky; }
 };
 
-FramePlan planFrame(const GpuScene& scene, const SgBake& bake, const RenderSettings& settings,
-                    std::vector<std::string>& skipped)
+FramePlan planFrame(const Scene& scene, const GpuScene& gpuScene, const SgTextures& textures,
+                    RenderView view, std::vector<std::string>& skipped)
 {
-    const RenderView view = settings.view;
-    const bool lit = view == RenderView::Final;
+    const bool final = view == RenderView::Final;
+    const bool diffuseView = final || view == RenderView::Diffuse;
+    const bool specularView = final || view == RenderView::Specular;
     FramePlan plan;
     plan.inspect = view == RenderView::Lobes || view == RenderView::Atlas;
-    plan.emission = lit;
-    const auto need = [&](bool& slot, bool scenePart, bool viewPart, const char* what,
-                          const char* reason) {
-        slot = scenePart && viewPart;
-        if (!slot)
-            skipped.push_back(std::string(what) + ": " + (scenePart ? "not in this view" : reason));
+    plan.emission = final;
+    const auto need = [&](bool& slot, bool viewPart, const char* what,
+                          std::initializer_list<std::pair<bool, const char*>> sceneParts) {
+        for (const auto& [there, reason] : sceneParts)
+            if (!there) {
+                skipped.push_back(std::string(what) + ": " + reason);
+                return;
+            }
+        slot = viewPart;
+        if (!viewPart)
+            skipped.push_back(std::string(what) + ": not in this view");
     };
-    need(plan.diffuse, true, lit || view == RenderView::Diffuse, "diffuse", "");
-    need(plan.specular, scene.has(gpu::kFeatureLayer), lit || view == RenderView::Specular,
-         "specular", "no surface has a specular layer");
-    need(plan.environment, bake.environment.has_value(), !plan.inspect, "environment",
-         "the scene has none");
-    need(plan.punctual, scene.lightCount > 0, lit, "punctual lights", "the scene has none");
+    const std::pair<bool, const char*> layer{gpuScene.has(gpu::kFeatureLayer),
+                                             "no surface has a specular layer"};
+    const std::pair<bool, const char*> lit{textures.radiance.lobes.valid(),
+                                           "no texel keeps a lobe"};
+    const std::pair<bool, const char*> seen{textures.environment.lobes.valid(),
+                                            "no texel sees the environment"};
+    need(plan.diffuse, diffuseView, "diffuse", {lit});
+    need(plan.specular, specularView, "specular", {layer, lit});
+    need(plan.punctual, final, "punctual lights",
+         {{gpuScene.lightCount > 0, "the scene has none"}});
+    if (!scene.environment) {
+        skipped.push_back("environment: the scene has none");
+        return plan;
+    }
+    need(plan.environmentDiffuse, diffuseView, "environment diffuse", {seen});
+    need(plan.environmentSpecular, specularView, "environment specular", {layer, seen});
+    need(plan.sky, final, "sky", {});
     return plan;
 }
 
@@ -71,33 +95,39 @@ ImageId addLight(RenderGraph& graph, const FramePlan& plan, const Scene& scene, 
                  const Camera& camera, const RenderSettings& settings)
 {
     ImageId lit = gbuffer.emissive;
-    const SgLobeIds radiance = importRadianceLobes(graph, textures);
+    const glm::vec3 eye = camera.eye;
+    const auto lobesOf = [&](SgLobeBuffers& lobes) {
+        return importLobes(graph, lobes, textures.resolution);
+    };
+    const std::uint32_t view = std::uint32_t(settings.view);
     if (plan.inspect)
-        return addSgViewPass(graph, gbuffer, radiance, camera.eye, std::uint32_t(settings.view),
-                             lit);
-    if (plan.diffuse)
-        lit = addSgDiffusePass(graph, "sg diffuse", gbuffer, radiance, camera.eye, settings.diffuse,
-                               lit);
-    const bool needsTable = plan.specular;
-    const ImageId tableId = needsTable ? graph.importImage(table) : ImageId{};
-    if (plan.specular)
-        lit = addSgSpecularPass(graph, gbuffer, radiance, tableId, camera.eye, settings.specular,
-                                lit);
-    if (plan.punctual)
-        lit = addPunctualPass(graph, gpuScene, gbuffer, camera.eye, lit);
-    if (!plan.environment)
-        return lit;
-    const SgLobeIds sky = importEnvironmentLobes(graph, textures);
-    EnvironmentIds environment = addEnvironment(graph, *scene.environment);
-    if (plan.diffuse)
-        lit = addSgDiffusePass(graph, "sg diffuse environment", gbuffer, sky, camera.eye,
-                               settings.diffuse, lit);
-    if (plan.specular) {
-        environment = addEnvironmentPrefilterPass(graph, environment);
-        lit = addSgEnvironmentPass(graph, gbuffer, sky, tableId, environment, camera.eye,
-                                   settings.specular, lit);
+        return addSgViewPass(graph, gbuffer, lobesOf(textures.radiance), eye, view, lit);
+    const ImageId tableId = plan.anySpecular() ? graph.importImage(table) : ImageId{};
+    if (plan.diffuse || plan.specular) {
+        const SgLobeIds radiance = lobesOf(textures.radiance);
+        if (plan.diffuse)
+            lit = addSgDiffusePass(graph, "sg diffuse", gbuffer, radiance, eye, settings.diffuse,
+                                   lit);
+        if (plan.specular)
+            lit = addSgSpecularPass(graph, gbuffer, radiance, tableId, eye, settings.specular, lit);
     }
-    if (settings.view == RenderView::Final) {
+    if (plan.punctual)
+        lit = addPunctualPass(graph, gpuScene, gbuffer, eye, lit);
+    if (!plan.anyEnvironment())
+        return lit;
+    EnvironmentIds environment = addEnvironment(graph, *scene.environment);
+    if (plan.environmentDiffuse || plan.environmentSpecular) {
+        const SgLobeIds seen = lobesOf(textures.environment);
+        if (plan.environmentDiffuse)
+            lit = addSgDiffusePass(graph, "sg diffuse environment", gbuffer, seen, eye,
+                                   settings.diffuse, lit);
+        if (plan.environmentSpecular) {
+            environment = addEnvironmentPrefilterPass(graph, environment);
+            lit = addSgEnvironmentPass(graph, gbuffer, seen, tableId, environment, eye,
+                                       settings.specular, lit);
+        }
+    }
+    if (plan.sky) {
         const glm::uvec3 extent = graph.extent(lit);
         lit = addSkyPass(graph, gbuffer.position, environment,
                          cameraRays(camera, extent.x, extent.y), lit);
@@ -112,11 +142,10 @@ FrameResult renderFrame(Context& context, const Scene& scene, GpuScene& gpuScene
 {
     checkInputs(scene, bake, settings);
     FrameResult result;
-    const FramePlan plan = planFrame(gpuScene, bake, settings, result.skipped);
     SgTextures textures = uploadSgTextures(context, bake);
-    Image table = plan.specular ? uploadSpecularTable(context) : Image();
-    result.textureBytes =
-        textures.radiance.bytes() + (bake.environment ? textures.environment.bytes() : 0);
+    const FramePlan plan = planFrame(scene, gpuScene, textures, settings.view, result.skipped);
+    Image table = plan.anySpecular() ? uploadSpecularTable(context) : Image();
+    result.textureBytes = textures.radiance.bytes() + textures.environment.bytes();
 
     RenderGraph graph(context);
     graph.setTimings(true); // the record of what ran

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
@@ -11,6 +12,7 @@
 #include "passes/sg_fit_cnn.hpp"
 #include "passes/sg_fit_direct.hpp"
 #include "passes/sg_fit_irradiance.hpp"
+#include "passes/sg_prune.hpp"
 #include "shaders/shared/sg_fit_types.h"
 
 namespace strandlight {
@@ -74,9 +76,32 @@ void countClamps(const FitProblem& problem, const SgField& field, FitStatistics&
         if (lobe.amplitude == glm::vec3(0.0f))
             ++statistics.amplitudesAtZero;
     }
+    countDropped(problem, field, statistics);
     statistics.raisedScales = problem.raisedScales;
     statistics.texelsWithoutImage = std::uint64_t(std::count_if(
         problem.scales.begin(), problem.scales.end(), [](float s) { return s < 0.0f; }));
+}
+
+// Lobes that can be missed are dropped, and the others find new places together, in small steps.
+SgField dropLobes(Context& context, const FitProblem& problem, const FitSettings& settings,
+                  SgField field, const FitState& before, const FitCheckpoint* checkpoint)
+{
+    pruneLobes(problem, settings, field);
+    FitSettings refit = settings;
+    refit.steps = settings.refitSteps;
+    refit.learningRate = 0.3f * settings.learningRate;
+    refit.coarseSmoothness = settings.smoothness;
+    DirectFit fit(context, problem, refit, startFit(problem, field));
+    // It is short: when it is interrupted, a resumed fit drops again from where it was before.
+    FitCheckpoint outer;
+    outer.secondsBetweenSaves = checkpoint ? checkpoint->secondsBetweenSaves : 0.0;
+    if (checkpoint && checkpoint->save)
+        outer.save = [&](const FitState&) { checkpoint->save(before); };
+    runToEnd(fit, problem, refit, 0.0, &outer, nullptr);
+    SgField kept = fieldFromState(problem, fit.state());
+    kept.tileSize = field.tileSize;
+    kept.kept = std::move(field.kept);
+    return kept;
 }
 
 SgField runDirect(Context& context, const FitProblem& problem, const FitSettings& settings,
@@ -90,10 +115,14 @@ SgField runDirect(Context& context, const FitProblem& problem, const FitSettings
                     " texels of " + std::to_string(problem.lobes) + " lobes");
     DirectFit fit(context, problem, settings, start);
     statistics.firstLoss = runToEnd(fit, problem, settings, start.firstLoss, checkpoint, watch);
-    const FitState state = fit.state();
+    FitState state = fit.state();
+    state.firstLoss = statistics.firstLoss;
     statistics.lastLoss = fit.loss();
     statistics.skippedSteps = state.skippedSteps;
-    return fieldFromState(problem, state);
+    SgField field = fieldFromState(problem, state);
+    return settings.lobeError > 0.0f
+               ? dropLobes(context, problem, settings, std::move(field), state, checkpoint)
+               : field;
 }
 
 } // namespace
@@ -139,6 +168,8 @@ SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings&
             // The encoder is trained again when a bake is resumed: it is the same to the last bit.
             if (settings.mode == FitMode::Cnn || !resume)
                 field = fitLobesByCnn(context, problem, settings, numbers, watch);
+            if (settings.mode == FitMode::Cnn && settings.lobeError > 0.0f)
+                pruneLobes(problem, settings, field);
             FitSettings refine = settings;
             refine.coarseSmoothness = refine.smoothness; // the encoder has found the places
             if (settings.mode == FitMode::CnnRefine)

@@ -140,6 +140,7 @@ FitProblem buildFitProblem(const Atlas& atlas, const CpuLightfield& field, Light
 
     FitProblem problem;
     problem.cells = buildFitCells(atlas);
+    problem.tiles = lobeTiles(atlas, std::max(settings.lobeTile, 1u));
     problem.lobes = settings.lobes;
     problem.size = field.size;
     problem.directions = fitDirections(field.size);

@@ -29,6 +29,7 @@ struct InterpolatedLobe
 {
     dvec3 axis;
     double axisLength; // before normalisation
+    double present;    // sum of the weights of the texels that have the lobe
     double sharpness;
     dvec3 amplitude;
 };
@@ -38,14 +39,18 @@ InterpolatedLobe interpolate(const LobeBlock& parameters, std::uint32_t lobe,
 {
     dvec3 axis(0.0), amplitude(0.0);
     double logSharpness = 0.0;
+    double missing = 0.0;
     for (int c = 0; c < 4; ++c) {
-        axis += weight[std::size_t(c)] * parameters.at3(lobe, gpu::kSgFitAxis, texel[c]);
-        logSharpness +=
-            weight[std::size_t(c)] * parameters.at(lobe, gpu::kSgFitSharpness, texel[c]);
-        amplitude += weight[std::size_t(c)] * parameters.at3(lobe, gpu::kSgFitAmplitude, texel[c]);
+        const double dropped = parameters.at(lobe, gpu::kSgFitDropped, texel[c]);
+        const double share = weight[std::size_t(c)] * (1.0 - dropped);
+        axis += share * parameters.at3(lobe, gpu::kSgFitAxis, texel[c]);
+        logSharpness += share * parameters.at(lobe, gpu::kSgFitSharpness, texel[c]);
+        amplitude += share * parameters.at3(lobe, gpu::kSgFitAmplitude, texel[c]);
+        missing += weight[std::size_t(c)] * dropped;
     }
     const double length = std::max(glm::length(axis), double(gpu::kSgFitShortestAxis));
-    return {axis / length, length, std::exp(logSharpness), amplitude};
+    const double present = std::max(1.0 - missing, double(gpu::kSgFitShortestAxis));
+    return {axis / length, length, present, std::exp(logSharpness / present), amplitude};
 }
 
 struct LobeGradient
@@ -155,7 +160,7 @@ FitCellGradients sgFitCellsReference(const FitProblem& problem, const FitStateRe
             const dvec3 across = g.towards - lobes[k].axis * glm::dot(lobes[k].axis, g.towards);
             const dvec3 dAxis = across * (lobes[k].sharpness / lobes[k].axisLength);
             const double components[gpu::kSgFitComponents] = {
-                dAxis.x,       dAxis.y,       dAxis.z,      g.sharpness,
+                dAxis.x,       dAxis.y,       dAxis.z,      g.sharpness / lobes[k].present,
                 g.amplitude.x, g.amplitude.y, g.amplitude.z};
             for (std::uint32_t c = 0; c < gpu::kSgFitComponents; ++c)
                 out.gradients[gpu::sgFitIndex(k, c, cell, cellCount)] = components[c];

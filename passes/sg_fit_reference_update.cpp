@@ -8,13 +8,14 @@
 namespace strandlight {
 namespace {
 
-// Adds d/dp of smoothness/2 * (difference to each neighbour)^2, per lobe and texel.
+// Adds d/dp of smoothness/2 * (difference to each neighbour that has the lobe)^2, per lobe and
+// texel.
 void addSmoothness(const FitProblem& problem, const LobeBlock& parameters, double smoothness,
                    std::uint32_t lobe, std::uint32_t texel, double gradient[gpu::kSgFitComponents])
 {
     for (std::size_t n = 0; n < 4; ++n) {
         const std::uint32_t other = problem.cells.neighbours[n * problem.texelCount() + texel];
-        if (other == gpu::kSgFitNone)
+        if (other == gpu::kSgFitNone || parameters.at(lobe, gpu::kSgFitDropped, other) != 0.0)
             continue;
         const double both = 0.5 * (std::abs(double(problem.scales[texel])) +
                                    std::abs(double(problem.scales[other])));
@@ -45,6 +46,8 @@ void sgFitUpdateReference(const FitProblem& problem, const FitCellGradients& cel
 
     for (std::uint32_t lobe = 0; lobe < problem.lobes; ++lobe) {
         for (std::uint32_t texel = 0; texel < texelCount; ++texel) {
+            if (parameters.at(lobe, gpu::kSgFitDropped, texel) != 0.0)
+                continue;
             const auto index = [&](std::uint32_t component) {
                 return gpu::sgFitIndex(lobe, component, texel, texelCount);
             };

@@ -49,6 +49,11 @@ struct FitSettings
     float coarseSmoothness = 0.5f;
     float smoothness = 0.02f;     // 0: none at any time
     std::uint32_t cnnSteps = 600; // of the encoder, 512 texels each
+    // Error-driven lobe count (passes/sg_prune.hpp): how much the fit's error may grow, as a
+    // fraction. 0: every texel keeps all lobes.
+    float lobeError = 0.0f;
+    std::uint32_t lobeTile = 2;     // atlas texels a side that keep the same lobes
+    std::uint32_t refitSteps = 150; // of those that are kept, in the direct modes
     std::uint32_t seed = 1;
 };
 
@@ -63,6 +68,9 @@ struct FitStatistics
     std::uint64_t raisedScales = 0;     // texels so dark that the floor of the mean radiance holds
     std::uint64_t heldIrradiance = 0; // channels whose irradiance is off by more than a factor of 2
     std::uint64_t texelsWithoutImage = 0; // inside geometry: filled by their neighbours
+    std::uint64_t lobesDropped = 0;
+    std::uint64_t tiles = 0;     // of texels that keep the same lobes; 0: nothing was dropped
+    std::uint64_t darkTiles = 0; // that keep none
 };
 
 // Everything that a direct fit needs to go on where it stopped, to the same bytes.

@@ -128,6 +128,8 @@ FitState startFit(const FitProblem& problem, const SgField& lobes)
             lobe.logSharpness = std::clamp(lobe.logSharpness, problem.minimumLogSharpness,
                                            problem.maximumLogSharpness);
             storeLobe(problem, state, t, k, lobe);
+            state.parameters[indexOf(problem, t, k, gpu::kSgFitDropped)] =
+                (lobes.keptBy(t) >> k & 1u) != 0u ? 0.0f : 1.0f;
         }
     }
     return state;

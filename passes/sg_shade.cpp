@@ -10,7 +10,7 @@ gpu::SgShadePush shadePush(const RenderGraph& graph, const GBufferIds& gbuffer,
                            const SgLobeIds& lobes, glm::vec3 eye)
 {
     const glm::uvec3 extent = graph.extent(gbuffer.position);
-    return {eye, extent.x, extent.y, lobes.resolution, lobes.lobeCount};
+    return {eye, extent.x, extent.y, lobes.resolution};
 }
 
 // The images that every shading pass reads.
@@ -23,7 +23,7 @@ void readGBuffer(PassBuilder& pass, const GBufferIds& gbuffer)
 
 void readLobes(PassBuilder& pass, const SgLobeIds& lobes)
 {
-    pass.read(lobes.texelIndex);
+    pass.read(lobes.texels);
     pass.read(lobes.lobes);
 }
 
@@ -39,7 +39,7 @@ ImageId addSgDiffusePass(RenderGraph& graph, std::string_view name, const GBuffe
     const ImageId out = pass.write(lit);
     pass.dispatch(kernels::sg_diffuse, graph.extent(out), shadePush(graph, gbuffer, lobes, eye),
                   {gbuffer.position, gbuffer.frame, gbuffer.tangent, gbuffer.normal,
-                   gbuffer.diffuse, gbuffer.specular, lobes.texelIndex, lobes.lobes, out},
+                   gbuffer.diffuse, gbuffer.specular, lobes.texels, lobes.lobes, out},
                   {std::uint32_t(model)});
     return out;
 }
@@ -55,7 +55,7 @@ ImageId addSgSpecularPass(RenderGraph& graph, const GBufferIds& gbuffer, const S
     const ImageId out = pass.write(lit);
     pass.dispatch(kernels::sg_specular, graph.extent(out), shadePush(graph, gbuffer, lobes, eye),
                   {gbuffer.position, gbuffer.frame, gbuffer.tangent, gbuffer.normal,
-                   gbuffer.diffuse, gbuffer.specular, lobes.texelIndex, lobes.lobes, table, out},
+                   gbuffer.diffuse, gbuffer.specular, lobes.texels, lobes.lobes, table, out},
                   {std::uint32_t(model)});
     return out;
 }
@@ -73,11 +73,10 @@ ImageId addSgEnvironmentPass(RenderGraph& graph, const GBufferIds& gbuffer, cons
     pass.read(environment.prefiltered);
     const ImageId out = pass.write(lit);
     const glm::uvec3 extent = graph.extent(out);
-    const gpu::SgEnvironmentPush push{
-        eye, extent.x, extent.y, lobes.resolution, lobes.lobeCount, environment.shape};
+    const gpu::SgEnvironmentPush push{eye, extent.x, extent.y, lobes.resolution, environment.shape};
     pass.dispatch(kernels::sg_environment, extent, push,
                   {gbuffer.position, gbuffer.frame, gbuffer.tangent, gbuffer.normal,
-                   gbuffer.diffuse, gbuffer.specular, lobes.texelIndex, lobes.lobes, table,
+                   gbuffer.diffuse, gbuffer.specular, lobes.texels, lobes.lobes, table,
                    environment.pyramid, environment.prefiltered, out},
                   {std::uint32_t(model)});
     return out;
@@ -92,7 +91,7 @@ ImageId addSgViewPass(RenderGraph& graph, const GBufferIds& gbuffer, const SgLob
     const ImageId out = pass.write(lit);
     pass.dispatch(kernels::sg_view, graph.extent(out), shadePush(graph, gbuffer, lobes, eye),
                   {gbuffer.position, gbuffer.frame, gbuffer.tangent, gbuffer.normal,
-                   gbuffer.specular, lobes.texelIndex, lobes.lobes, out},
+                   gbuffer.specular, lobes.texels, lobes.lobes, out},
                   {view});
     return out;
 }

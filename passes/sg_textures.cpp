@@ -1,6 +1,7 @@
 #include "passes/sg_textures.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include <glm/gtc/packing.hpp>
@@ -13,43 +14,61 @@ namespace {
 
 constexpr float kLargestHalf = 65504.0f;
 
-std::vector<glm::uvec4> packField(const SgField& field, std::size_t texels, const char* name)
+void checkField(const SgField& field, std::size_t texels, const char* name)
 {
-    if (field.lobeCount == 0 || field.lobes.size() != texels * field.lobeCount)
+    if (field.lobeCount == 0 || field.lobeCount > kMaximumLobes ||
+        field.lobes.size() != texels * field.lobeCount ||
+        (!field.kept.empty() && field.kept.size() != texels))
         throw Error("bake: the " + std::string(name) + " field has " +
-                    std::to_string(field.lobes.size()) + " lobes, the atlas has " +
+                    std::to_string(field.lobes.size()) + " lobes and " +
+                    std::to_string(field.kept.size()) + " masks, the atlas has " +
                     std::to_string(texels) + " texels of " + std::to_string(field.lobeCount));
+}
+
+std::vector<glm::uvec4> packKeptLobes(const SgField& field)
+{
     std::vector<glm::uvec4> packed;
-    packed.reserve(field.lobes.size());
-    for (const SgLobe& lobe : field.lobes)
-        packed.push_back(packSgLobe(lobe));
+    packed.reserve(field.keptCount());
+    for (std::size_t i = 0; i < field.lobes.size(); ++i)
+        if ((field.keptBy(i / field.lobeCount) >> (i % field.lobeCount) & 1u) != 0u)
+            packed.push_back(packSgLobe(field.lobes[i]));
     return packed;
 }
 
-Buffer uploadLobes(Context& context, const SgField& field, std::size_t texels, const char* name)
+std::vector<glm::uvec2> indexTexels(const Atlas& atlas, const SgField& field)
 {
-    const std::vector<glm::uvec4> packed = packField(field, texels, name);
+    std::vector<glm::uvec2> index(std::size_t(atlas.resolution) * atlas.resolution,
+                                  glm::uvec2(gpu::kNoTexel, 0u));
+    std::uint32_t first = 0;
+    for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
+        const AtlasTexel& texel = atlas.texels[i];
+        if (texel.x >= atlas.resolution || texel.y >= atlas.resolution)
+            throw Error("bake: texel (" + std::to_string(texel.x) + ", " + std::to_string(texel.y) +
+                        ") lies outside the atlas of " + std::to_string(atlas.resolution));
+        const std::uint32_t mask = field.keptBy(i);
+        index[std::size_t(texel.y) * atlas.resolution + texel.x] = {first, mask};
+        first += std::uint32_t(std::popcount(mask));
+    }
+    return index;
+}
+
+SgLobeBuffers uploadLobes(Context& context, const Atlas& atlas, const SgField& field,
+                          const char* name)
+{
+    checkField(field, atlas.texels.size(), name);
+    const std::vector<glm::uvec4> packed = packKeptLobes(field);
     const std::uint64_t bytes = packed.size() * sizeof(glm::uvec4);
     if (bytes > context.maxStorageBufferBytes())
         throw Error("bake: the " + std::string(name) + " lobes take " + std::to_string(bytes) +
                     " bytes, one binding of this device holds " +
                     std::to_string(context.maxStorageBufferBytes()) +
                     "; use a smaller atlas or fewer lobes");
-    return Buffer::from(context, packed, std::string("sg lobes ") + name);
-}
-
-std::vector<std::uint32_t> indexTexels(const Atlas& atlas)
-{
-    std::vector<std::uint32_t> index(std::size_t(atlas.resolution) * atlas.resolution,
-                                     gpu::kNoTexel);
-    for (std::size_t i = 0; i < atlas.texels.size(); ++i) {
-        const AtlasTexel& texel = atlas.texels[i];
-        if (texel.x >= atlas.resolution || texel.y >= atlas.resolution)
-            throw Error("bake: texel (" + std::to_string(texel.x) + ", " + std::to_string(texel.y) +
-                        ") lies outside the atlas of " + std::to_string(atlas.resolution));
-        index[std::size_t(texel.y) * atlas.resolution + texel.x] = std::uint32_t(i);
-    }
-    return index;
+    SgLobeBuffers buffers;
+    buffers.texels =
+        Buffer::from(context, indexTexels(atlas, field), std::string("sg texels ") + name);
+    if (!packed.empty())
+        buffers.lobes = Buffer::from(context, packed, std::string("sg lobes ") + name);
+    return buffers;
 }
 
 std::vector<glm::vec4> packCorners(const Atlas& atlas)
@@ -79,30 +98,20 @@ glm::uvec4 packSgLobe(const SgLobe& lobe)
 
 SgTextures uploadSgTextures(Context& context, const SgBake& bake)
 {
-    const std::size_t texels = bake.atlas.texels.size();
     SgTextures textures;
     textures.resolution = bake.atlas.resolution;
-    textures.texelIndex = Buffer::from(context, indexTexels(bake.atlas), "sg texel index");
     textures.corners = Buffer::from(context, packCorners(bake.atlas), "atlas corners");
-    textures.radiance = uploadLobes(context, bake.radiance, texels, "radiance");
-    textures.radianceLobes = bake.radiance.lobeCount;
-    if (bake.environment) {
-        textures.environment = uploadLobes(context, *bake.environment, texels, "environment");
-        textures.environmentLobes = bake.environment->lobeCount;
-    }
+    textures.radiance = uploadLobes(context, bake.atlas, bake.radiance, "radiance");
+    if (bake.environment && bake.environment->keptCount() > 0)
+        textures.environment = uploadLobes(context, bake.atlas, *bake.environment, "environment");
     return textures;
 }
 
-SgLobeIds importRadianceLobes(RenderGraph& graph, SgTextures& textures)
+SgLobeIds importLobes(RenderGraph& graph, SgLobeBuffers& lobes, std::uint32_t resolution)
 {
-    return {graph.importBuffer(textures.texelIndex), graph.importBuffer(textures.radiance),
-            textures.resolution, textures.radianceLobes};
-}
-
-SgLobeIds importEnvironmentLobes(RenderGraph& graph, SgTextures& textures)
-{
-    return {graph.importBuffer(textures.texelIndex), graph.importBuffer(textures.environment),
-            textures.resolution, textures.environmentLobes};
+    // A binding cannot stay empty: what is not read may be any buffer.
+    const BufferId texels = graph.importBuffer(lobes.texels);
+    return {texels, lobes.lobes.valid() ? graph.importBuffer(lobes.lobes) : texels, resolution};
 }
 
 } // namespace strandlight

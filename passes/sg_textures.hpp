@@ -13,15 +13,26 @@
 
 namespace strandlight {
 
+// One lobe set.
+struct SgLobeBuffers
+{
+    Buffer texels; // uvec2 [resolution, resolution]: first lobe and mask of the kept ones;
+                   // (kNoTexel, 0) where the atlas has no surface
+    Buffer lobes;  // uvec4 [kept lobes], layout of shaders/sg/lobe_fetch.glsl; not valid() where no
+                   // texel keeps one: there is nothing to be shaded with
+
+    std::uint64_t bytes() const
+    {
+        return (texels.valid() ? texels.bytes() : 0) + (lobes.valid() ? lobes.bytes() : 0);
+    }
+};
+
 struct SgTextures
 {
-    std::uint32_t resolution = 0;       // of the atlas
-    std::uint32_t radianceLobes = 0;    // per texel
-    std::uint32_t environmentLobes = 0; // per texel, 0: none
-    Buffer texelIndex;                  // uint [resolution, resolution]: covered texel or kNoTexel
-    Buffer radiance;    // uvec4 [texels, radianceLobes], layout of shaders/sg/lobe_fetch.glsl
-    Buffer environment; // uvec4 [texels, environmentLobes]
-    Buffer corners;     // vec4 [triangles, 4]: (tangent, u) of three corners, then (v, v, v, 0)
+    std::uint32_t resolution = 0; // of the atlas
+    SgLobeBuffers radiance;
+    SgLobeBuffers environment; // without an environment, or when none of it is seen: no buffers
+    Buffer corners; // vec4 [triangles, 4]: (tangent, u) of three corners, then (v, v, v, 0)
 };
 
 // One lobe in 16 bytes. Halves: amplitudes beyond 65504 are clamped, ln(lambda) keeps lambda to 0.4
@@ -35,12 +46,10 @@ SgTextures uploadSgTextures(Context& context, const SgBake& bake);
 // One lobe set in a graph.
 struct SgLobeIds
 {
-    BufferId texelIndex;
+    BufferId texels;
     BufferId lobes;
     std::uint32_t resolution = 0;
-    std::uint32_t lobeCount = 0;
 };
-SgLobeIds importRadianceLobes(RenderGraph& graph, SgTextures& textures);
-SgLobeIds importEnvironmentLobes(RenderGraph& graph, SgTextures& textures);
+SgLobeIds importLobes(RenderGraph& graph, SgLobeBuffers& lobes, std::uint32_t resolution);
 
 } // namespace strandlight

@@ -2,13 +2,14 @@
 
 #include <cmath>
 
+#include "engine/base/error.hpp"
+
 namespace strandlight {
 
 namespace {
 
 constexpr std::uint32_t kLongestText = 4096;
 constexpr std::uint32_t kMaximumResolution = 4096;
-constexpr std::uint32_t kMaximumLobes = 64;
 constexpr std::uint64_t kCornerBytes = 20;
 constexpr std::uint64_t kTexelBytes = 20;
 
@@ -26,6 +27,45 @@ void expectBytes(const ByteReader& reader, std::uint64_t count, std::uint64_t ea
     if (reader.left() % each != 0 || reader.left() / each != count)
         reader.fail("has " + std::to_string(reader.left()) + " bytes for " + std::to_string(count) +
                     " entries of " + std::to_string(each));
+}
+
+// u32 tile size, then a mask for each tile, of as many bytes as the lobes have bits.
+void encodeMasks(const SgField& field, const Atlas& atlas, ByteWriter& writer)
+{
+    writer.value(field.tileSize);
+    if (field.tileSize == 0)
+        return;
+    const LobeTiles tiles = lobeTiles(atlas, field.tileSize);
+    std::vector<std::uint32_t> masks(tiles.count, 0);
+    for (std::size_t t = 0; t < field.kept.size(); ++t)
+        masks[tiles.tileOf[t]] = field.kept[t];
+    for (std::size_t t = 0; t < field.kept.size(); ++t)
+        if (masks[tiles.tileOf[t]] != field.kept[t] || (field.kept[t] & ~field.allLobes()) != 0u)
+            throw Error("cannot store texel " + std::to_string(t) +
+                        ": it keeps other lobes than its tile");
+    for (const std::uint32_t mask : masks)
+        for (std::size_t byte = 0; byte < sglMaskBytes(field.lobeCount); ++byte)
+            writer.value(static_cast<std::uint8_t>(mask >> (8 * byte)));
+}
+
+void decodeMasks(ByteReader& reader, const Atlas& atlas, SgField& field)
+{
+    field.tileSize = reader.value<std::uint32_t>();
+    if (field.tileSize > kMaximumResolution)
+        reader.fail("claims tiles of " + std::to_string(field.tileSize) + " texels a side");
+    if (field.tileSize == 0)
+        return;
+    const LobeTiles tiles = lobeTiles(atlas, field.tileSize);
+    std::vector<std::uint32_t> masks(tiles.count, 0);
+    for (std::uint32_t& mask : masks) {
+        for (std::size_t byte = 0; byte < sglMaskBytes(field.lobeCount); ++byte)
+            mask |= std::uint32_t(reader.value<std::uint8_t>()) << (8 * byte);
+        if ((mask & ~field.allLobes()) != 0u)
+            reader.fail("a tile keeps lobes that are not there");
+    }
+    field.kept.reserve(tiles.tileOf.size());
+    for (const std::uint32_t tile : tiles.tileOf)
+        field.kept.push_back(masks[tile]);
 }
 
 } // namespace
@@ -157,7 +197,8 @@ void decodeTexels(ByteReader reader, std::uint64_t count, Atlas& atlas)
     }
 }
 
-std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
+std::vector<std::uint8_t> encodeField(const SgField& field, const Atlas& atlas,
+                                      std::uint32_t version, SglStorage storage,
                                       std::uint64_t& clamped)
 {
     const SglLobeCoding coding = chooseCoding(field, storage);
@@ -167,13 +208,18 @@ std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
     writer.value(coding.amplitudeScale);
     writer.value(coding.logSharpnessLow);
     writer.value(coding.logSharpnessHigh);
-    const std::span<std::uint8_t> out = writer.extend(field.lobes.size() * size);
+    if (version > 1)
+        encodeMasks(field, atlas, writer);
+    const std::span<std::uint8_t> out = writer.extend(field.keptCount() * size);
+    std::size_t next = 0;
     for (std::size_t i = 0; i < field.lobes.size(); ++i)
-        clamped += encodeLobe(field.lobes[i], coding, out.subspan(i * size, size));
+        if ((field.keptBy(i / field.lobeCount) >> (i % field.lobeCount) & 1u) != 0u)
+            clamped += encodeLobe(field.lobes[i], coding, out.subspan(next++ * size, size));
     return writer.take();
 }
 
-SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCount)
+SgField decodeField(ByteReader reader, const Atlas& atlas, std::uint32_t version,
+                    SglStorage storage)
 {
     SgField field;
     field.lobeCount = reader.value<std::uint32_t>();
@@ -185,11 +231,15 @@ SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCo
     coding.logSharpnessHigh = readFinite(reader, "the sharpness range");
     if (!(coding.amplitudeScale > 0.0f))
         reader.fail("the amplitude scale is not positive");
+    if (version > 1)
+        decodeMasks(reader, atlas, field);
+    field.lobes.resize(atlas.texels.size() * field.lobeCount); // those not kept are black
     const std::size_t size = sglBytesPerLobe(storage);
-    expectBytes(reader, texelCount * field.lobeCount, size);
+    expectBytes(reader, field.keptCount(), size);
 
-    field.lobes.reserve(texelCount * field.lobeCount);
-    for (std::uint64_t i = 0; i < texelCount * field.lobeCount; ++i) {
+    for (std::size_t i = 0; i < field.lobes.size(); ++i) {
+        if ((field.keptBy(i / field.lobeCount) >> (i % field.lobeCount) & 1u) == 0u)
+            continue;
         const SgLobe lobe = decodeLobe(reader.take(size), coding);
         const glm::vec3& a = lobe.amplitude;
         const bool valid = std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z) &&
@@ -198,7 +248,7 @@ SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCo
         if (!valid)
             reader.fail("lobe " + std::to_string(i % field.lobeCount) + " of texel " +
                         std::to_string(i / field.lobeCount) + " is not a light");
-        field.lobes.push_back(lobe);
+        field.lobes[i] = lobe;
     }
     return field;
 }

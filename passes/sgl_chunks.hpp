@@ -23,8 +23,11 @@ std::vector<std::uint8_t> encodeTexels(const Atlas& atlas);
 void decodeTexels(ByteReader reader, std::uint64_t count, Atlas& atlas);
 
 // Adds the number of clamped lobes to `clamped`. Throws Error for lobes that cannot be stored.
-std::vector<std::uint8_t> encodeField(const SgField& field, SglStorage storage,
+// Version 1 has every lobe of every texel, version 2 the kept ones.
+std::vector<std::uint8_t> encodeField(const SgField& field, const Atlas& atlas,
+                                      std::uint32_t version, SglStorage storage,
                                       std::uint64_t& clamped);
-SgField decodeField(ByteReader reader, SglStorage storage, std::uint64_t texelCount);
+SgField decodeField(ByteReader reader, const Atlas& atlas, std::uint32_t version,
+                    SglStorage storage);
 
 } // namespace strandlight

@@ -34,7 +34,9 @@ enum ChunkIndex : std::size_t
 
 void checkField(const SgField& field, const Atlas& atlas, const char* name)
 {
-    if (field.lobeCount == 0 || field.lobes.size() != atlas.texels.size() * field.lobeCount)
+    if (field.lobeCount == 0 || field.lobeCount > kMaximumLobes ||
+        field.lobes.size() != atlas.texels.size() * field.lobeCount ||
+        field.kept.size() != (field.tileSize > 0 ? atlas.texels.size() : 0))
         throw Error(std::string("cannot store a bake whose ") + name + " field has " +
                     std::to_string(field.lobes.size()) + " lobes for " +
                     std::to_string(atlas.texels.size()) + " texels of " +
@@ -50,7 +52,7 @@ std::uint32_t headerCrc(std::span<const std::uint8_t> headerAndTable)
 }
 
 std::vector<std::uint8_t> assembleFile(const std::vector<std::vector<std::uint8_t>>& chunks,
-                                       SglStorage storage)
+                                       std::uint32_t version, SglStorage storage)
 {
     std::uint64_t offset = kHeaderBytes + kEntryBytes * chunks.size();
     std::uint64_t total = offset;
@@ -59,7 +61,7 @@ std::vector<std::uint8_t> assembleFile(const std::vector<std::vector<std::uint8_
     ByteWriter writer;
     for (const std::uint8_t byte : kMagic)
         writer.value(byte);
-    writer.value(kSglVersion);
+    writer.value(version);
     writer.value(storage);
     writer.value(total);
     writer.value(static_cast<std::uint32_t>(chunks.size()));
@@ -80,16 +82,24 @@ std::vector<std::uint8_t> assembleFile(const std::vector<std::vector<std::uint8_
     return bytes;
 }
 
-// Magic, version, storage and chunk count; everything that decides how to read on.
-std::size_t readHeader(ByteReader& reader, std::span<const std::uint8_t> bytes, SglStorage& storage)
+struct Header
+{
+    std::uint32_t version = 0;
+    SglStorage storage = SglStorage::Fp16;
+    std::size_t chunkCount = 0;
+};
+
+// Everything that decides how to read on.
+Header readHeader(ByteReader& reader, std::span<const std::uint8_t> bytes)
 {
     for (const std::uint8_t byte : kMagic)
         if (reader.value<std::uint8_t>() != byte)
             reader.fail("is not an .sgl file (wrong magic number)");
     const auto version = reader.value<std::uint32_t>();
-    if (version != kSglVersion)
-        reader.fail("has version " + std::to_string(version) + ", this program reads version " +
-                    std::to_string(kSglVersion) + ": bake again");
+    if (version < 1 || version > kSglVersion)
+        reader.fail("has version " + std::to_string(version) +
+                    ", this program reads versions 1 to " + std::to_string(kSglVersion) +
+                    ": bake again");
     const auto storageCode = reader.value<std::uint32_t>();
     const auto total = reader.value<std::uint64_t>();
     if (total != bytes.size())
@@ -104,16 +114,16 @@ std::size_t readHeader(ByteReader& reader, std::span<const std::uint8_t> bytes, 
         reader.fail("is damaged (wrong checksum)");
     if (storageCode > 1)
         reader.fail("has the unknown storage " + std::to_string(storageCode));
-    storage = static_cast<SglStorage>(storageCode);
-    return count;
+    return {version, static_cast<SglStorage>(storageCode), count};
 }
 
 // The chunks' bytes in order of kTags, each with the right checksum, together the whole file.
 std::vector<ByteReader> readChunks(std::span<const std::uint8_t> bytes, const std::string& name,
-                                   SglStorage& storage)
+                                   Header& header)
 {
-    ByteReader header(bytes, name, "header");
-    const std::size_t count = readHeader(header, bytes, storage);
+    ByteReader reader(bytes, name, "header");
+    header = readHeader(reader, bytes);
+    const std::size_t count = header.chunkCount;
     ByteReader table(bytes.subspan(kHeaderBytes, kEntryBytes * count), name, "chunk table");
     std::uint64_t expected = kHeaderBytes + kEntryBytes * count;
     std::vector<ByteReader> chunks;
@@ -145,25 +155,36 @@ std::vector<std::uint8_t> encodeSgl(const SgBake& bake, SglStorage storage, SglS
     checkField(bake.radiance, bake.atlas, "radiance");
     if (bake.environment)
         checkField(*bake.environment, bake.atlas, "environment");
+    const bool tiled =
+        bake.radiance.tileSize > 0 || (bake.environment && bake.environment->tileSize > 0);
+    const std::uint32_t version = tiled ? kSglVersion : 1;
     std::uint64_t clamped = 0;
     std::vector<std::vector<std::uint8_t>> chunks = {
         encodeInfo(bake.info), encodeAtlasSizes(bake.atlas), encodeCorners(bake.atlas),
-        encodeTexels(bake.atlas), encodeField(bake.radiance, storage, clamped)};
+        encodeTexels(bake.atlas),
+        encodeField(bake.radiance, bake.atlas, version, storage, clamped)};
     if (bake.environment)
-        chunks.push_back(encodeField(*bake.environment, storage, clamped));
-    std::vector<std::uint8_t> bytes = assembleFile(chunks, storage);
+        chunks.push_back(encodeField(*bake.environment, bake.atlas, version, storage, clamped));
+    std::vector<std::uint8_t> bytes = assembleFile(chunks, version, storage);
     if (report != nullptr) {
-        const std::uint64_t lobes = std::uint64_t(bake.radiance.lobeCount) +
-                                    (bake.environment ? bake.environment->lobeCount : 0);
-        *report = {bytes.size(), lobes * sglBytesPerLobe(storage), clamped};
+        std::uint64_t all = 16 + bake.radiance.lobes.size() * sglBytesPerLobe(storage);
+        std::uint64_t stored = chunks[kRadiance].size();
+        if (bake.environment) {
+            all += 16 + bake.environment->lobes.size() * sglBytesPerLobe(storage);
+            stored += chunks[kEnvironment].size();
+        }
+        const double texels = double(std::max<std::size_t>(bake.atlas.texels.size(), 1));
+        const std::uint64_t heads = bake.environment ? 32 : 16;
+        *report = {bytes.size(), double(stored - heads) / texels, all - std::min(stored, all),
+                   clamped};
     }
     return bytes;
 }
 
 SgBake decodeSgl(std::span<const std::uint8_t> bytes, const std::string& name)
 {
-    SglStorage storage = SglStorage::Fp16;
-    const std::vector<ByteReader> chunks = readChunks(bytes, name, storage);
+    Header header;
+    const std::vector<ByteReader> chunks = readChunks(bytes, name, header);
     std::uint64_t cornerCount = 0;
     std::uint64_t texelCount = 0;
     SgBake bake;
@@ -171,9 +192,10 @@ SgBake decodeSgl(std::span<const std::uint8_t> bytes, const std::string& name)
     bake.atlas = decodeAtlasSizes(chunks[kAtlas], cornerCount, texelCount);
     decodeCorners(chunks[kCorners], cornerCount, bake.atlas);
     decodeTexels(chunks[kTexels], texelCount, bake.atlas);
-    bake.radiance = decodeField(chunks[kRadiance], storage, texelCount);
+    bake.radiance = decodeField(chunks[kRadiance], bake.atlas, header.version, header.storage);
     if (chunks.size() > kEnvironment)
-        bake.environment = decodeField(chunks[kEnvironment], storage, texelCount);
+        bake.environment =
+            decodeField(chunks[kEnvironment], bake.atlas, header.version, header.storage);
     return bake;
 }
 

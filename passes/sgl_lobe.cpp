@@ -59,13 +59,16 @@ void checkLobe(const SgLobe& lobe, std::size_t index, std::uint32_t lobeCount)
 SglLobeCoding chooseCoding(const SgField& field, SglStorage storage)
 {
     SglLobeCoding coding{.storage = storage};
-    if (field.lobes.empty())
-        return coding;
     float brightest = 0.0f;
-    coding.logSharpnessLow = coding.logSharpnessHigh = field.lobes.front().logSharpness;
+    bool any = false;
     for (std::size_t i = 0; i < field.lobes.size(); ++i) {
+        if ((field.keptBy(i / field.lobeCount) >> (i % field.lobeCount) & 1u) == 0u)
+            continue;
         const SgLobe& lobe = field.lobes[i];
         checkLobe(lobe, i, field.lobeCount);
+        if (!any)
+            coding.logSharpnessLow = coding.logSharpnessHigh = lobe.logSharpness;
+        any = true;
         brightest = std::max({brightest, std::abs(lobe.amplitude.x), std::abs(lobe.amplitude.y),
                               std::abs(lobe.amplitude.z)});
         coding.logSharpnessLow = std::min(coding.logSharpnessLow, lobe.logSharpness);

@@ -32,9 +32,15 @@ constexpr std::size_t sglBytesPerLobe(SglStorage storage)
     return storage == SglStorage::Fp16 ? 12 : 8;
 }
 
-// Chooses scale and range. Throws Error, naming the texel, for a lobe that is not finite or
-// brighter than kSglLargestAmplitude, whose axis length is outside [0.9, 1.1] or whose ln sharpness
-// is outside [-16, 16].
+// Of the mask of a tile: a bit for each lobe.
+constexpr std::size_t sglMaskBytes(std::uint32_t lobeCount)
+{
+    return (lobeCount + 7) / 8;
+}
+
+// Chooses scale and range of the kept lobes. Throws Error, naming the texel, for a lobe that is not
+// finite or brighter than kSglLargestAmplitude, whose axis length is outside [0.9, 1.1] or whose ln
+// sharpness is outside [-16, 16].
 SglLobeCoding chooseCoding(const SgField& field, SglStorage storage);
 
 // `out` holds sglBytesPerLobe() bytes. Returns whether a value was clamped: the packed format has

@@ -34,6 +34,14 @@ void addSettings(CLI::App& app, Options& o)
     addNumber(app, "--lobes", s.lobes, "Spherical gaussians per texel", 1u, 32u);
     addNumber(app, "--env-lobes", s.environmentLobes, "The same for the environment's visibility",
               1u, 32u);
+    app.add_option(
+           "--lobe-error", s.lobeError,
+           "Lobes are dropped while the fit's error grows by no more than this fraction; 0: "
+           "all are kept")
+        ->type_name("E")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0f, 10.0f));
+    addNumber(app, "--lobe-tile", s.lobeTile, "Texels a side that keep the same lobes", 1u, 64u);
     app.add_option("--fit", o.fit, "How lobes are found")
         ->type_name("MODE")
         ->capture_default_str()
@@ -66,6 +74,8 @@ Json describe(const Options& o, const Context& context, const SgBake& bake,
                         {"lightfield", s.lightfieldSize},
                         {"lobes", s.lobes},
                         {"environment_lobes", s.environmentLobes},
+                        {"lobe_error", s.lobeError},
+                        {"lobe_tile", s.lobeTile},
                         {"fit", o.fit},
                         {"steps", s.steps},
                         {"spp", s.samplesPerDirection},
@@ -96,9 +106,8 @@ void print(const Options& o, const Context& context, const SgBake& bake,
     std::printf("atlas     %ux%u, %u charts, %u texels with surface, %u of them inside geometry\n",
                 bake.atlas.resolution, bake.atlas.resolution, bake.atlas.chartCount,
                 statistics.texels, statistics.skippedTexels);
-    std::printf("lobes     %u per texel, %llu bytes per texel, light field RMSE %.4g\n",
-                bake.radiance.lobeCount, static_cast<unsigned long long>(saved.lobeBytesPerTexel),
-                statistics.radianceRmse);
+    std::printf("lobes     %u per texel, %.1f bytes per texel, light field RMSE %.4g\n",
+                bake.radiance.lobeCount, saved.lobeBytesPerTexel, statistics.radianceRmse);
     if (bake.environment)
         std::printf("window    %u lobes per texel for the environment, RMSE %.4g\n",
                     bake.environment->lobeCount, statistics.environmentRmse);

@@ -90,6 +90,14 @@ Command addFits(CLI::App& parent)
         ->allow_extra_args(false) // the scene may follow
         ->capture_default_str()
         ->check(CLI::IsMember({"direct", "cnn", "cnn+refine"}));
+    app->add_option("--lobe-error", s.lobeErrors,
+                    "Adds the direct fit with lobes dropped, as in bake; one row each")
+        ->type_name("E,E,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(0.0f, 10.0f));
+    addNumber(*app, "--lobe-tile", s.fit.lobeTile, "Texels a side that keep the same lobes", 1u,
+              64u);
     addJsonOption(*app, o->json);
     addDeviceOptions(*app, o->device);
     addExamples(*app, "  strandlight fits builtin:room --json fits.json\n"

@@ -15,11 +15,11 @@ layout(binding = 2, rgba32f) uniform readonly image2D tangentImage;
 layout(binding = 3, rgba32f) uniform readonly image2D normalImage;
 layout(binding = 4, rgba32f) uniform readonly image2D diffuseImage;
 layout(binding = 5, rgba32f) uniform readonly image2D specularImage;
-layout(binding = 6, r32ui) uniform readonly uimageBuffer texelIndex;
+layout(binding = 6, rg32ui) uniform readonly uimageBuffer texels;
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer lobes;
 layout(binding = 8, rgba32f) uniform image2D lit;
 layout(push_constant, scalar) uniform Push { SgShadePush push; };
-#define SG_TEXEL_INDEX texelIndex
+#define SG_TEXELS texels
 #define SG_LOBES lobes
 #include "sg/frame.glsl"
 #include "sg/lobe_fetch.glsl"
@@ -55,10 +55,10 @@ void main()
     float largestF0 = max(max(specular.x, specular.y), specular.z);
     float wideMean = diffuseSchlickWeight(dot(normal, view));
 
-    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution, push.lobeCount);
+    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution);
     vec3 irradiance = vec3(0.0);
-    for (uint i = 0u; i < push.lobeCount; ++i) {
-        SgSample lobe = sgFetch(footprint, i);
+    for (uint rest = footprint.lobes; rest != 0u; rest &= rest - 1u) {
+        SgSample lobe = sgFetch(footprint, uint(findLSB(rest)));
         float response = irradianceOf(lobe.lambda, clamp(dot(lobe.axis, normal), -1.0, 1.0));
         float schlick = lobeSchlickWeight(wideMean, view, normal, lobe.axis, lobe.lambda);
         float kept = 1.0 - mix(largestF0, diffuse.w, schlick);

@@ -22,14 +22,14 @@ layout(binding = 2, rgba32f) uniform readonly image2D tangentImage;
 layout(binding = 3, rgba32f) uniform readonly image2D normalImage;
 layout(binding = 4, rgba32f) uniform readonly image2D diffuseImage;
 layout(binding = 5, rgba32f) uniform readonly image2D specularImage;
-layout(binding = 6, r32ui) uniform readonly uimageBuffer texelIndex;
+layout(binding = 6, rg32ui) uniform readonly uimageBuffer texels;
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer lobes;
 layout(binding = 8) uniform sampler2DArray specularTable;
 layout(binding = 9, rgba32f) uniform readonly imageBuffer pyramid;
 layout(binding = 10, rgba32f) uniform readonly imageBuffer prefiltered;
 layout(binding = 11, rgba32f) uniform image2D lit;
 layout(push_constant, scalar) uniform Push { SgEnvironmentPush push; };
-#define SG_TEXEL_INDEX texelIndex
+#define SG_TEXELS texels
 #define SG_LOBES lobes
 #define SG_SPECULAR_TABLE specularTable
 #define ENVIRONMENT_PYRAMID pyramid
@@ -63,14 +63,14 @@ void main()
     vec3 view = toFrame(frame, viewWorld);
 
     // Numerator: the lobes' reflection, and how sharp the lobes were that made it.
-    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution, push.lobeCount);
+    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution);
     SgMixture mixture = specularMixtureAt(alpha, normal, view);
     vec3 reflected = vec3(0.0);
     vec3 irradiance = vec3(0.0);
     float inverseSharpness = 0.0;
     float total = 1e-20;
-    for (uint i = 0u; i < push.lobeCount; ++i) {
-        SgSample lobe = sgFetch(footprint, i);
+    for (uint rest = footprint.lobes; rest != 0u; rest &= rest - 1u) {
+        SgSample lobe = sgFetch(footprint, uint(findLSB(rest)));
         vec2 response = specularResponse(kModel, mixture, alpha, normal, view, lobe.axis, lobe.lambda);
         reflected += lobe.amplitude * (specular.rgb * response.x + f90 * response.y);
         irradiance += lobe.amplitude * sgIrradiance(lobe.lambda, clamp(dot(lobe.axis, normal), -1.0, 1.0));

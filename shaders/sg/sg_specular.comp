@@ -14,12 +14,12 @@ layout(binding = 2, rgba32f) uniform readonly image2D tangentImage;
 layout(binding = 3, rgba32f) uniform readonly image2D normalImage;
 layout(binding = 4, rgba32f) uniform readonly image2D diffuseImage;
 layout(binding = 5, rgba32f) uniform readonly image2D specularImage;
-layout(binding = 6, r32ui) uniform readonly uimageBuffer texelIndex;
+layout(binding = 6, rg32ui) uniform readonly uimageBuffer texels;
 layout(binding = 7, rgba32ui) uniform readonly uimageBuffer lobes;
 layout(binding = 8) uniform sampler2DArray specularTable;
 layout(binding = 9, rgba32f) uniform image2D lit;
 layout(push_constant, scalar) uniform Push { SgShadePush push; };
-#define SG_TEXEL_INDEX texelIndex
+#define SG_TEXELS texels
 #define SG_LOBES lobes
 #define SG_SPECULAR_TABLE specularTable
 #include "sg/frame.glsl"
@@ -45,11 +45,11 @@ void main()
     vec3 normal = toFrame(frame, normalAlpha.xyz);
     vec3 view = toFrame(frame, normalize(push.eye - position.xyz));
 
-    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution, push.lobeCount);
+    SgFootprint footprint = sgFootprint(vec2(frameN.w, frameT.w), push.atlasResolution);
     SgMixture mixture = specularMixtureAt(normalAlpha.w, normal, view);
     vec3 radiance = vec3(0.0);
-    for (uint i = 0u; i < push.lobeCount; ++i) {
-        SgSample lobe = sgFetch(footprint, i);
+    for (uint rest = footprint.lobes; rest != 0u; rest &= rest - 1u) {
+        SgSample lobe = sgFetch(footprint, uint(findLSB(rest)));
         vec2 response = specularResponse(kModel, mixture, normalAlpha.w, normal, view, lobe.axis, lobe.lambda);
         radiance += lobe.amplitude * (specular.rgb * response.x + f90 * response.y);
     }

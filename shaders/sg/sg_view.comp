@@ -12,11 +12,11 @@ layout(binding = 1, rgba32f) uniform readonly image2D frameImage;
 layout(binding = 2, rgba32f) uniform readonly image2D tangentImage;
 layout(binding = 3, rgba32f) uniform readonly image2D normalImage;
 layout(binding = 4, rgba32f) uniform readonly image2D specularImage;
-layout(binding = 5, r32ui) uniform readonly uimageBuffer texelIndex;
+layout(binding = 5, rg32ui) uniform readonly uimageBuffer texels;
 layout(binding = 6, rgba32ui) uniform readonly uimageBuffer lobes;
 layout(binding = 7, rgba32f) uniform image2D lit;
 layout(push_constant, scalar) uniform Push { SgShadePush push; };
-#define SG_TEXEL_INDEX texelIndex
+#define SG_TEXELS texels
 #define SG_LOBES lobes
 #include "sg/frame.glsl"
 #include "sg/lobe_fetch.glsl"
@@ -25,10 +25,10 @@ layout(push_constant, scalar) uniform Push { SgShadePush push; };
 vec3 mirrorRadiance(AtlasFrame frame, vec2 place, vec3 normal, vec3 view)
 {
     vec3 direction = toFrame(frame, normal * (2.0 * dot(normal, view)) - view);
-    SgFootprint footprint = sgFootprint(place, push.atlasResolution, push.lobeCount);
+    SgFootprint footprint = sgFootprint(place, push.atlasResolution);
     vec3 radiance = vec3(0.0);
-    for (uint i = 0u; i < push.lobeCount; ++i) {
-        SgSample lobe = sgFetch(footprint, i);
+    for (uint rest = footprint.lobes; rest != 0u; rest &= rest - 1u) {
+        SgSample lobe = sgFetch(footprint, uint(findLSB(rest)));
         radiance += lobe.amplitude * sgEvaluate(direction, lobe.axis, lobe.lambda);
     }
     return sgFootprintEmpty(footprint) ? vec3(0.0) : max(radiance, vec3(0.0));
@@ -38,7 +38,7 @@ vec3 mirrorRadiance(AtlasFrame frame, vec2 place, vec3 normal, vec3 view)
 vec3 texelColor(vec2 place)
 {
     uvec2 texel = min(uvec2(max(place, vec2(0.0))), uvec2(push.atlasResolution - 1u));
-    uint index = imageLoad(SG_TEXEL_INDEX, int(texel.y * push.atlasResolution + texel.x)).x;
+    uint index = imageLoad(SG_TEXELS, int(texel.y * push.atlasResolution + texel.x)).x;
     uvec3 hash = hashPcg3(uvec3(texel / 8u, 1u));
     vec3 color = vec3(uniformFloat(hash.x), uniformFloat(hash.y), uniformFloat(hash.z));
     float checker = ((texel.x + texel.y) & 1u) == 0u ? 1.0 : 0.6;

@@ -49,18 +49,23 @@ void main()
     float axisLength[kLobes];
     float sharpness[kLobes];
     float steepness[kLobes]; // sharpness / ln 2
+    float present[kLobes];   // sum of the weights of the texels that have the lobe
     vec3 amplitude[kLobes];
     [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
         vec4 first = vec4(0.0); // axis, ln sharpness
+        float missing = 0.0;
         amplitude[k] = vec3(0.0);
         [[unroll]] for (uint c = 0u; c < 4u; ++c) {
             int index = int(k * 2u * push.texelCount + texel[c]);
-            first += weight[c] * imageLoad(parameters, index);
-            amplitude[k] += weight[c] * imageLoad(parameters, index + int(push.texelCount)).xyz;
+            vec4 second = imageLoad(parameters, index + int(push.texelCount)); // amplitude, dropped
+            first += weight[c] * (1.0 - second.w) * imageLoad(parameters, index);
+            amplitude[k] += weight[c] * (1.0 - second.w) * second.xyz;
+            missing += weight[c] * second.w;
         }
+        present[k] = max(1.0 - missing, kSgFitShortestAxis);
         axisLength[k] = max(length(first.xyz), kSgFitShortestAxis);
         axis[k] = first.xyz / axisLength[k];
-        sharpness[k] = exp(first.w);
+        sharpness[k] = exp(first.w / present[k]);
         steepness[k] = sharpness[k] * 1.44269504;
     }
 
@@ -112,7 +117,7 @@ void main()
     [[unroll]] for (uint k = 0u; k < kLobes; ++k) {
         float along = dot(axis[k], towards[k]);
         vec3 dAxis = (towards[k] - axis[k] * along) * (sharpness[k] / axisLength[k]);
-        float dSharpness = sharpness[k] * (along - total[k]);
+        float dSharpness = sharpness[k] * (along - total[k]) / present[k];
         uint index = k * 2u * push.cellCount + cell;
         gradients[index] = vec4(dAxis, dSharpness);
         gradients[index + push.cellCount] = vec4(dAmplitude[k], 0.0);

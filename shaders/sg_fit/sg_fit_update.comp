@@ -35,8 +35,14 @@ void main()
     int second = first + int(push.texelCount);            // amplitude
     float scale = abs(imageLoad(scales, int(texel)).x);
     vec4 shape = imageLoad(before, first);
-    vec3 amplitude = imageLoad(before, second).xyz;
+    vec4 amplitudeDropped = imageLoad(before, second);
+    vec3 amplitude = amplitudeDropped.xyz;
     vec3 axis = shape.xyz;
+    if (amplitudeDropped.w != 0.0) {
+        imageStore(after, first, shape);
+        imageStore(after, second, amplitudeDropped);
+        return;
+    }
 
     // The texel's share in the gradient of each of its cells.
     vec4 dShape = vec4(0.0);
@@ -53,16 +59,17 @@ void main()
     }
     dAmplitude *= scale; // the parameter that Adam sees is amplitude / scale
 
-    // Smoothness: half the squared difference to each neighbour.
+    // Smoothness: half the squared difference to each neighbour that has the lobe.
     [[unroll]] for (uint slot = 0u; slot < 4u; ++slot) {
         uint other = imageLoad(neighbours, int(slot * push.texelCount + texel)).x;
         if (other != kSgFitNone) {
             float both = 0.5 * (scale + abs(imageLoad(scales, int(other)).x));
             int index = int(lobe * 2u * push.texelCount + other);
-            dShape += push.smoothness * vec4(vec3(kSgFitSmoothAxis), kSgFitSmoothSharpness) *
+            vec4 otherAmplitude = imageLoad(before, index + int(push.texelCount));
+            float smoothness = otherAmplitude.w == 0.0 ? push.smoothness : 0.0;
+            dShape += smoothness * vec4(vec3(kSgFitSmoothAxis), kSgFitSmoothSharpness) *
                       (shape - imageLoad(before, index));
-            dAmplitude += push.smoothness * kSgFitSmoothAmplitude / both *
-                          (amplitude - imageLoad(before, index + int(push.texelCount)).xyz);
+            dAmplitude += smoothness * kSgFitSmoothAmplitude / both * (amplitude - otherAmplitude.xyz);
         }
     }
     dShape.xyz -= axis * dot(axis, dShape.xyz);

@@ -14,13 +14,14 @@
 
 STRANDLIGHT_SHARED_BEGIN
 
-// A lobe is two vec4, so that a lane fetches it with two loads: (axis, ln lambda) and (amplitude, 0).
+// A lobe is two vec4, so that a lane fetches it with two loads: (axis, ln lambda) and (amplitude, dropped).
 // Blocks are [lobe * 2 + half, item] vec4, item = texel or cell; component c of a lobe is component c % 4 of half c / 4.
 STRANDLIGHT_CONST(uint) kSgFitAxis = 0u;      // 3: unit axis in the texel's frame
 STRANDLIGHT_CONST(uint) kSgFitSharpness = 3u; // 1: ln(lambda)
 STRANDLIGHT_CONST(uint) kSgFitAmplitude = 4u; // 3: radiance
 STRANDLIGHT_CONST(uint) kSgFitComponents = 7u;
-STRANDLIGHT_CONST(uint) kSgFitLobeFloats = 8u; // with the padding
+STRANDLIGHT_CONST(uint) kSgFitDropped = 7u;   // 1: the texel does without this lobe, which stays as it is; else 0
+STRANDLIGHT_CONST(uint) kSgFitLobeFloats = 8u;
 // Adam keeps one second moment per group (axis, sharpness, amplitude), so that a step neither turns with the
 // coordinate axes nor changes hue: [lobe, texel] vec4 (axis, sharpness, amplitude, 0).
 STRANDLIGHT_CONST(uint) kSgFitGroups = 3u;

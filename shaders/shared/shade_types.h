@@ -45,7 +45,6 @@ struct SgShadePush
     uint width;
     uint height;
     uint atlasResolution;
-    uint lobeCount;
 };
 
 // The radiance pyramid of the environment and its GGX-prefiltered levels, rgba32f texel buffers.
@@ -75,7 +74,6 @@ struct SgEnvironmentPush
     uint width;
     uint height;
     uint atlasResolution;
-    uint lobeCount;
     EnvironmentShape environment;
 };
 

@@ -59,6 +59,20 @@ SgBake makeBake(std::uint32_t resolution, bool withEnvironment)
     return bake;
 }
 
+// Tiles of 4 x 4 texels that keep lobes by chance, some none, some all.
+SgBake makeTiledBake(std::uint32_t resolution)
+{
+    SgBake bake = makeBake(resolution, true);
+    bake.radiance = makeField(bake.atlas.texels.size(), 11, 3); // two bytes a mask
+    bake.radiance.tileSize = 4;
+    const LobeTiles tiles = lobeTiles(bake.atlas, 4);
+    for (const std::uint32_t tile : tiles.tileOf) {
+        const std::uint32_t mask = gpu::hashPcg(tile) & bake.radiance.allLobes();
+        bake.radiance.kept.push_back(tile % 5 == 0 ? 0u : tile % 5 == 1 ? 0x7ffu : mask);
+    }
+    return bake;
+}
+
 std::string errorOf(std::span<const std::uint8_t> bytes)
 {
     try {
@@ -234,9 +248,66 @@ TEST_CASE("sgl: the same bake gives the same bytes")
     CHECK(encodeSgl(bake, SglStorage::Packed) == encodeSgl(bake, SglStorage::Packed));
 }
 
+TEST_CASE("sgl: texels get back the lobes that they keep, and black ones in place of the others")
+{
+    const SgBake a = makeTiledBake(24);
+    SglSaveReport report;
+    const auto bytes = encodeSgl(a, SglStorage::Fp16, &report);
+    const SgBake b = decodeSgl(bytes, "memory");
+    CHECK(bytes[8] == 2);
+    CHECK(b.radiance.tileSize == 4);
+    CHECK(b.radiance.kept == a.radiance.kept);
+    CHECK(b.radiance.keptCount() < a.radiance.lobes.size());
+    CHECK(b.environment->kept.empty()); // one field with tiles, one without
+    for (std::size_t i = 0; i < a.radiance.lobes.size(); ++i) {
+        const bool kept = (a.radiance.kept[i / 11] >> (i % 11) & 1u) != 0u;
+        const glm::vec3 expected = kept ? a.radiance.lobes[i].amplitude : glm::vec3(0.0f);
+        CHECK(glm::distance(b.radiance.lobes[i].amplitude, expected) <=
+              glm::length(expected) / 1024.0f + 1e-4f);
+    }
+    // 12 bytes a dropped lobe, less the tile size and two bytes a tile.
+    const std::uint64_t dropped = a.radiance.lobes.size() - a.radiance.keptCount();
+    CHECK(report.savedBytes == dropped * 12 - 4 - 4 - 2 * lobeTiles(a.atlas, 4).count);
+}
+
+TEST_CASE("sgl: a field of no light at all takes a mask per tile")
+{
+    SgBake bake = makeBake(24, false);
+    bake.radiance.tileSize = 8;
+    bake.radiance.kept.assign(bake.atlas.texels.size(), 0u);
+    SglSaveReport report;
+    const SgBake again = decodeSgl(encodeSgl(bake, SglStorage::Packed, &report), "memory");
+    CHECK(again.radiance.keptCount() == 0);
+    CHECK(report.lobeBytesPerTexel < 1.0);
+}
+
+TEST_CASE("sgl: masks that make no sense are refused")
+{
+    SgBake bake = makeTiledBake(16);
+    bake.radiance.kept[1] ^= 1u; // another than its tile's
+    CHECK_THROWS_AS(encodeSgl(bake, SglStorage::Fp16), Error);
+    bake = makeTiledBake(16);
+    bake.radiance.kept.pop_back();
+    CHECK_THROWS_AS(encodeSgl(bake, SglStorage::Fp16), Error);
+
+    const auto good = encodeSgl(makeTiledBake(16), SglStorage::Fp16);
+    std::uint64_t radiance = 0; // offset of its chunk
+    std::memcpy(&radiance, &good[32 + 24 * 4 + 8], 8);
+    const auto changed = [&](std::size_t at, std::uint8_t value) {
+        auto bytes = good;
+        bytes[radiance + at] = value;
+        repairChecksums(bytes);
+        return errorOf(bytes);
+    };
+    CHECK(changed(0, 33).find("claims 33 lobes") != std::string::npos);
+    CHECK(changed(18, 1).find("claims tiles of 65540 texels") != std::string::npos);
+    CHECK(changed(21, 0xff).find("lobes that are not there") != std::string::npos); // bits 8..15
+    CHECK(changed(16, 3).find("chunk RADL") != std::string::npos); // another number of tiles
+}
+
 TEST_CASE("sgl: a file cut anywhere is refused")
 {
-    const auto bytes = encodeSgl(makeBake(24, true), SglStorage::Fp16);
+    const auto bytes = encodeSgl(makeTiledBake(24), SglStorage::Fp16);
     for (std::size_t size = 0; size < bytes.size(); size += 64)
         CHECK(!errorOf(std::span(bytes).first(size)).empty());
     CHECK(!errorOf(std::span(bytes).first(bytes.size() - 1)).empty());
@@ -247,7 +318,7 @@ TEST_CASE("sgl: a file cut anywhere is refused")
 
 TEST_CASE("sgl: every flipped bit is found")
 {
-    auto bytes = encodeSgl(makeBake(8, true), SglStorage::Packed);
+    auto bytes = encodeSgl(makeTiledBake(8), SglStorage::Packed);
     std::size_t missed = 0;
     for (std::size_t i = 0; i < bytes.size(); ++i) {
         for (int bit = 0; bit < 8; ++bit) {
@@ -262,14 +333,15 @@ TEST_CASE("sgl: every flipped bit is found")
 
 TEST_CASE("sgl: altered contents under right checksums give a bake in range or one error")
 {
-    const auto good = encodeSgl(makeBake(10, true), SglStorage::Fp16);
-    auto same = good;
+    const std::vector<std::uint8_t> versions[2] = {encodeSgl(makeBake(10, true), SglStorage::Fp16),
+                                                   encodeSgl(makeTiledBake(10), SglStorage::Fp16)};
+    auto same = versions[0];
     repairChecksums(same);
-    REQUIRE(same == good);
+    REQUIRE(same == versions[0]);
     const std::size_t contents = 32 + 24 * 6;
     std::size_t refused = 0;
-    for (std::uint32_t round = 0; round < 4000; ++round) {
-        auto bytes = good;
+    for (std::uint32_t round = 0; round < 6000; ++round) {
+        auto bytes = versions[round / 2 % 2];
         const glm::uvec3 draw = gpu::hashPcg3({round, 1, 2});
         // The sizes in the front, and the rest, in equal parts.
         const std::size_t range = round % 2 ? 200 : bytes.size() - contents;
@@ -280,6 +352,7 @@ TEST_CASE("sgl: altered contents under right checksums give a bake in range or o
             const SgBake bake = decodeSgl(bytes, "test.sgl");
             for (const AtlasTexel& texel : bake.atlas.texels)
                 CHECK(texel.triangle < bake.atlas.corners.size() / 3);
+            CHECK(bake.radiance.keptCount() <= bake.radiance.lobes.size());
             for (const SgLobe& lobe : bake.radiance.lobes)
                 CHECK(std::isfinite(lobe.amplitude.x + lobe.amplitude.y + lobe.amplitude.z));
         } catch (const FileError&) {
@@ -293,8 +366,10 @@ TEST_CASE("sgl: errors name the file and the reason")
 {
     auto bytes = encodeSgl(makeBake(8, false), SglStorage::Fp16);
     CHECK(errorOf({}).find("test.sgl: header") != std::string::npos);
+    CHECK(bytes[8] == 1); // without dropped lobes, the file is as it always was
     bytes[8] = 9;
-    CHECK(errorOf(bytes).find("version 9") != std::string::npos);
+    CHECK(errorOf(bytes).find("version 9, this program reads versions 1 to 2") !=
+          std::string::npos);
     bytes[8] = 1;
     bytes[1] = 'X';
     CHECK(errorOf(bytes).find("magic") != std::string::npos);
