@@ -1,5 +1,4 @@
-// Which kernel and register tile a convolution gets: one table of measured cases per class of
-// device.
+// Which kernel and register tile a convolution gets: one table per class of device.
 #pragma once
 
 #include <cstdint>
