@@ -27,15 +27,27 @@ TileReach belowDecoder(const TileReach& reader, std::uint32_t padding)
 }
 
 // A layer above a 3x3 convolution of stride 2, whose output q reads 2 q - 1 to 2 q + 1: [first,
-// end) is read by [first / 2, end / 2 + 1), first and end being even.
-TileReach aboveEncoder(const TileReach& reader)
+// end) is read by [first / 2, end / 2 + 1). An odd `first` is rounded down, so it reaches a pixel
+// farther back.
+TileReach aboveEncoder(const TileReach& reader, bool even)
 {
-    return {reader.level - 1, reader.before, reader.after + (1u << reader.level)};
+    const std::uint32_t level = reader.level - 1;
+    return {level, reader.before + (even ? 0 : 1u << level), reader.after + (1u << reader.level)};
 }
 
 TileReach widest(const TileReach& a, const TileReach& b)
 {
     return {a.level, std::max(a.before, b.before), std::max(a.after, b.after)};
+}
+
+// A skip is read beside `up`, and by the encoder below it. Tiles of 8 stay even through three
+// halvings.
+TileReach skipReach(const UNetReach& reach, std::uint32_t level, bool tileAligned)
+{
+    TileReach skip = reach.skip.back();
+    for (std::uint32_t l = skip.level; l-- > level;)
+        skip = widest(reach.up[l], aboveEncoder(skip, tileAligned && l - level < 3));
+    return skip;
 }
 
 void addList(RenderGraph& graph, PassBuilder& pass, const TileReach& reach, const TensorDesc& x,
@@ -77,10 +89,10 @@ UNetReach unetReach(const UNetDesc& net)
     for (std::uint32_t l = 1; l < bottom; ++l)
         reach.up[l] = belowDecoder(reach.up[l - 1], net.upKernel / 2 - 1);
     reach.skip[bottom] = belowDecoder(reach.up[bottom - 1], net.upKernel / 2 - 1);
-    // Down: a skip is read beside `up`, and by the encoder below it.
     for (std::uint32_t l = bottom; l-- > 0;)
-        reach.skip[l] = widest(reach.up[l], aboveEncoder(reach.skip[l + 1]));
-    reach.input = net.head > 0 ? aroundKernel(reach.skip[0]) : reach.skip[0];
+        reach.skip[l] = skipReach(reach, l, true);
+    // What a head reads begins a pixel before the tile: no longer even.
+    reach.input = net.head > 0 ? aroundKernel(skipReach(reach, 0, false)) : reach.skip[0];
     return reach;
 }
 

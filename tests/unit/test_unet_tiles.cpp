@@ -58,8 +58,8 @@ Needs followTaps(const UNetDesc& net, int p)
     return n;
 }
 
-// Every tile with a needed pixel is wanted; and wanted tiles reach no farther than four pixels of
-// their level beyond what is needed.
+// Every tile with a needed pixel is wanted; and wanted tiles reach no farther than a tile's side
+// beyond what is needed: a bound for odd starts serves even ones.
 void checkReach(const TileReach& reach, const Pixels& needed, int p)
 {
     const int side = int(gpu::kConvTileHeight), scale = 1 << reach.level;
@@ -68,10 +68,10 @@ void checkReach(const TileReach& reach, const Pixels& needed, int p)
         const int first = tile * side, end = first + side;
         const bool wanted =
             first * scale - int(reach.before) <= p && p < end * scale + int(reach.after);
-        const auto from = needed.lower_bound(first), near = needed.lower_bound(first - 4);
+        const auto from = needed.lower_bound(first), near = needed.lower_bound(first - side);
         if (from != needed.end() && *from < end)
             CHECK(wanted);
-        if (near == needed.end() || *near >= end + 4)
+        if (near == needed.end() || *near >= end + side)
             CHECK_FALSE(wanted);
     }
 }
