@@ -48,7 +48,10 @@ std::vector<NearTexel> nearTexels(const Scene& scene, const Atlas& atlas, glm::v
 glm::vec3 lobesRadiance(const SgField& field, std::size_t texel, glm::vec3 local)
 {
     glm::vec3 sum(0.0f);
+    const std::uint32_t kept = field.keptBy(texel);
     for (std::uint32_t k = 0; k < field.lobeCount; ++k) {
+        if ((kept >> k & 1u) == 0u)
+            continue;
         const SgLobe& lobe = field.lobes[texel * field.lobeCount + k];
         sum += lobe.amplitude * gpu::sgEvaluate(local, lobe.axis, std::exp(lobe.logSharpness));
     }
