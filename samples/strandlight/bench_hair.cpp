@@ -102,7 +102,7 @@ public:
                         {"ssim", error.picture.ssim},
                         {"flip", error.picture.flip},
                         {"coverage_error", error.coverage},
-                        {"flicker", flickerOf(method)},
+                        {"flicker", flickerOf(method, frame)},
                         {"ms", millisecondsOf(frame, "")},
                         {"ms_shadow", millisecondsOf(frame, "shadow")},
                         {"ms_strands", millisecondsOf(frame, "hair strands")}});
@@ -128,10 +128,9 @@ private:
     }
 
     // Between a frame and one with other noise a pixel on.
-    double flickerOf(const Method& method)
+    double flickerOf(const Method& method, const HairFrame& first)
     {
         HairRenderSettings settings = settingsOf(method);
-        const HairFrame first = render(settings);
         settings.frameIndex = method.frames;
         settings.lensShift = {1.0f, 0.0f};
         return hairFlicker(first, render(settings));
