@@ -58,8 +58,8 @@ Needs followTaps(const UNetDesc& net, int p)
     return n;
 }
 
-// Every tile with a needed pixel is wanted; and wanted tiles reach no farther than a tile's side
-// beyond what is needed: a bound for odd starts serves even ones.
+// Every tile with a needed pixel is wanted; and wanted tiles reach no farther than two tiles
+// beyond what is needed: a bound for odd starts serves even ones, at four levels 15 pixels.
 void checkReach(const TileReach& reach, const Pixels& needed, int p)
 {
     const int side = int(gpu::kConvTileHeight), scale = 1 << reach.level;
@@ -68,10 +68,10 @@ void checkReach(const TileReach& reach, const Pixels& needed, int p)
         const int first = tile * side, end = first + side;
         const bool wanted =
             first * scale - int(reach.before) <= p && p < end * scale + int(reach.after);
-        const auto from = needed.lower_bound(first), near = needed.lower_bound(first - side);
+        const auto from = needed.lower_bound(first), near = needed.lower_bound(first - 2 * side);
         if (from != needed.end() && *from < end)
             CHECK(wanted);
-        if (near == needed.end() || *near >= end + side)
+        if (near == needed.end() || *near >= end + 2 * side)
             CHECK_FALSE(wanted);
     }
 }
