@@ -1,5 +1,6 @@
 #include "compute_nn/activation.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "engine/base/assert.hpp"
@@ -19,6 +20,13 @@ gpu::ElementPush elementPush(const TensorId& in, const TensorId& out, const Tens
     return {in.view(), out.view(), saved.view(), out.desc.c * out.desc.pixels(), slope};
 }
 
+// Rows of 2^20 threads: an axis takes 65,535 groups.
+glm::uvec3 elementThreads(const gpu::ElementPush& push, std::uint32_t images)
+{
+    constexpr std::uint32_t kRow = 1u << 20;
+    return {std::min(push.channelPixels, kRow), images, (push.channelPixels + kRow - 1) / kRow};
+}
+
 TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t kind, float slope,
                         const TensorId& x, const TensorId& y)
 {
@@ -26,7 +34,7 @@ TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t
     const BufferId from = pass.read(x.buffer);
     const BufferId to = pass.write(y.buffer);
     const gpu::ElementPush push = elementPush(x, y, x, slope);
-    pass.dispatch(kernels::activation, {push.channelPixels, y.desc.n, 1}, push, {from, from, to},
+    pass.dispatch(kernels::activation, elementThreads(push, y.desc.n), push, {from, from, to},
                   {kind, 0});
     return y.as(to);
 }
@@ -63,7 +71,7 @@ TensorId activationBackward(RenderGraph& graph, std::string_view name, const Act
     const BufferId saved = pass.read(y.buffer);
     const BufferId to = pass.write(dX.buffer);
     const gpu::ElementPush push = elementPush(dY, dX, y, activation.slope);
-    pass.dispatch(kernels::activation, {push.channelPixels, y.desc.n, 1}, push, {from, saved, to},
+    pass.dispatch(kernels::activation, elementThreads(push, y.desc.n), push, {from, saved, to},
                   {std::uint32_t(activation.kind), 1});
     return dX.as(to);
 }

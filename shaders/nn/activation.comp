@@ -45,7 +45,7 @@ float derivative(float y)
 
 void main()
 {
-    uint r = gl_GlobalInvocationID.x;
+    uint r = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint n = gl_GlobalInvocationID.y;
     if (r >= push.channelPixels)
         return;

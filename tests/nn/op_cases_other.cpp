@@ -16,10 +16,10 @@ namespace strandlight::test {
 
 namespace {
 
-void addActivation(std::vector<OpCase>& cases, const Activation& a)
+void addActivation(std::vector<OpCase>& cases, const Activation& a,
+                   const TensorDesc& desc = {3, 5, 7, 11})
 {
     // Beyond +-88 the naive formulas overflow; the last values probe the twins' own extremes.
-    const TensorDesc desc{3, 5, 7, 11};
     const auto values = [desc] {
         std::vector<float> x = randomValues<float>(desc.elements(), 30, -20.0f, 20.0f);
         const float extremes[] = {0.0f, 1e-8f, -1e-8f, 1.0f, 100.0f, -100.0f, 1e4f, -1e4f, 1e-20f};
@@ -27,7 +27,7 @@ void addActivation(std::vector<OpCase>& cases, const Activation& a)
         return x;
     };
     cases.push_back(
-        {"activation " + std::to_string(std::uint32_t(a.kind)),
+        {"activation " + std::to_string(std::uint32_t(a.kind)) + " " + shapeText(desc),
          [=](Context& context) {
              RenderGraph graph(context);
              const TensorId x = uploadTensor(graph, "x", desc, values());
@@ -206,6 +206,8 @@ void addOtherCases(std::vector<OpCase>& cases)
                                 Activation::leakyRelu(0.1f), Activation{ActivationKind::Softplus},
                                 Activation{ActivationKind::Sigmoid}})
         addActivation(cases, a);
+    // More groups than one axis of a dispatch takes.
+    addActivation(cases, Activation::none(), {1, 33, 320, 256});
     for (LossKind kind : {LossKind::MeanSquare, LossKind::Relative, LossKind::Log1p}) {
         addLoss(cases, kind, {1, 1, 1, 1}, false);
         addLoss(cases, kind, {1, 3, 13, 5}, true);
