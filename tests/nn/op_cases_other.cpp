@@ -213,7 +213,8 @@ void addOtherCases(std::vector<OpCase>& cases)
         addLoss(cases, kind, {1, 3, 13, 5}, true);
         addLoss(cases, kind, {2, 3, 64, 67}, true);
     }
-    addMixture(cases, {.images = 1, .lobes = 1, .directions = 1});
+    // Two images: of the first one the only weight is 1e-35, which the kernels take for zero.
+    addMixture(cases, {.images = 2, .lobes = 1, .directions = 1});
     addMixture(cases, {.images = 7, .lobes = 8, .directions = 256});
     addMixture(
         cases,
