@@ -14,13 +14,14 @@ void main()
 {
     uint id = gl_GlobalInvocationID.x;
     float factor = push.factor + float(id & 7u) * 1e-6;
+    float addend = push.addend; // once: in the loop it would be loaded every turn, into a register too many
     float chain[kBenchChains];
     [[unroll]] for (uint k = 0; k < kBenchChains; ++k)
         chain[k] = float(k);
     for (uint turn = 0; turn < push.turns; ++turn)
         [[unroll]] for (uint step = 0; step < kBenchUnroll; ++step)
             [[unroll]] for (uint k = 0; k < kBenchChains; ++k)
-                chain[k] = chain[k] * factor + push.addend;
+                chain[k] = chain[k] * factor + addend;
     float sum = 0.0;
     [[unroll]] for (uint k = 0; k < kBenchChains; ++k)
         sum += chain[k];
