@@ -23,7 +23,9 @@ HairDistantLight fitDistantLight(const Environment& environment, std::uint32_t c
 // facing each of the six axes, those that look into the direction and are near counting more. What
 // no texel looks into, the ground under an open scene, is half as bright as the mean.
 // One light for the whole head: texels know the light on their walls, not between them, and a
-// head is small against a room. The bake must be of the scene.
-Environment lightFieldAt(const Scene& scene, const SgBake& bake, glm::vec3 place);
+// head is small against a room. Texels within `radius` are left out (unless there are no others):
+// they see the head itself, whose shadow the hair's own maps hold. The bake must be of the scene.
+Environment lightFieldAt(const Scene& scene, const SgBake& bake, glm::vec3 place,
+                         float radius = 0.0f);
 
 } // namespace strandlight

@@ -17,8 +17,9 @@ struct NearTexel
     float weight; // by distance
 };
 
-// The 16 nearest facing each axis.
-std::vector<NearTexel> nearTexels(const Scene& scene, const Atlas& atlas, glm::vec3 place)
+// The 16 nearest facing each axis, beyond the radius.
+std::vector<NearTexel> nearTexels(const Scene& scene, const Atlas& atlas, glm::vec3 place,
+                                  float radius)
 {
     constexpr std::size_t kNearest = 16;
     std::vector<NearTexel> sides[6];
@@ -28,7 +29,7 @@ std::vector<NearTexel> nearTexels(const Scene& scene, const Atlas& atlas, glm::v
         const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         const glm::vec3 path = point.position - place;
         // A texel knows the light on its own side.
-        if (glm::dot(path, point.n) >= 0.0f)
+        if (glm::dot(path, point.n) >= 0.0f || glm::dot(path, path) < radius * radius)
             continue;
         const float weight = 1.0f / (0.01f + glm::dot(path, path));
         sides[2 * axis + (point.n[axis] > 0.0f ? 1 : 0)].push_back({i, point, weight});
@@ -60,9 +61,11 @@ glm::vec3 lobesRadiance(const SgField& field, std::size_t texel, glm::vec3 local
 
 } // namespace
 
-Environment lightFieldAt(const Scene& scene, const SgBake& bake, glm::vec3 place)
+Environment lightFieldAt(const Scene& scene, const SgBake& bake, glm::vec3 place, float radius)
 {
-    const std::vector<NearTexel> texels = nearTexels(scene, bake.atlas, place);
+    std::vector<NearTexel> texels = nearTexels(scene, bake.atlas, place, radius);
+    if (texels.empty())
+        texels = nearTexels(scene, bake.atlas, place, 0.0f);
     Environment result{CpuImage(64, 32)};
     CpuImage& picture = result.latLong;
     glm::dvec4 known(0.0);

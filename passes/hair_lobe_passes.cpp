@@ -88,12 +88,14 @@ void uploadHairLobes(Context& context, HairBuffers& buffers, const HairStrands& 
                      const HairRenderSettings& settings)
 {
     buffers.lobes = Buffer::from(context, distant.lobes, "hair lobes");
+    // Maps that begin at the hair's bounds clip what lies before them.
+    const Scene* reach = distant.local ? nullptr : opaque;
     for (std::uint32_t i = 0; i < distant.mapped; ++i)
         buffers.alongLights.push_back(
-            hairShadowDirection(hair, opaque, distant.lobes[i].axis, settings.shadowSize));
+            hairShadowDirection(hair, reach, distant.lobes[i].axis, settings.shadowSize));
     for (std::uint32_t i = 0; i < gpu::kHairOpenDirections; ++i)
         buffers.alongLights.push_back(
-            hairShadowDirection(hair, opaque, openDirection(i), kOpenSize));
+            hairShadowDirection(hair, reach, openDirection(i), kOpenSize));
     buffers.along = Buffer::from(context, buffers.alongLights, "hair lobe shadows");
     // All visible until the passes say otherwise.
     const std::vector<glm::vec4> open(buffers.pointCount, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));

@@ -41,6 +41,8 @@ struct HairDistantLight
 {
     std::vector<gpu::HairLobe> lobes; // by falling energy; the last one has sharpness 0
     std::uint32_t mapped = 0;         // so many of the first have shadow maps of their own
+    // Opaque geometry beyond the hair has shaped this light already: it hides none of it.
+    bool local = false;
 };
 
 struct HairRenderSettings

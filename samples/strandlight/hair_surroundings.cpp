@@ -6,6 +6,7 @@
 #include "engine/scene/hair_head.hpp"
 #include "engine/scene/scene_loader.hpp"
 #include "passes/hair_distant.hpp"
+#include "passes/hair_lights.hpp"
 #include "passes/render_frame.hpp"
 #include "samples/strandlight/open_bake.hpp"
 
@@ -29,8 +30,10 @@ HairSurroundings openSurroundings(const HairOptions& o, const HairStrands& hair)
     }
     if (!o.bake.empty()) {
         around.bake = openBake(o.bake, *around.opaque);
-        const glm::vec3 place = 0.5f * (hair.boundsMin() + hair.boundsMax());
-        around.distant = fitDistantLight(lightFieldAt(*around.opaque, *around.bake, place));
+        const HairSphere sphere = boundingSphere(hair);
+        around.distant = fitDistantLight(
+            lightFieldAt(*around.opaque, *around.bake, sphere.centre, sphere.radius));
+        around.distant->local = true;
     } else if (around.opaque && around.opaque->environment) {
         around.distant = fitDistantLight(*around.opaque->environment);
     }

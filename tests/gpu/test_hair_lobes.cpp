@@ -26,10 +26,11 @@ gpu::HairLobe lobe(glm::vec3 axis, float sharpness, glm::vec3 energy, float shar
 }
 
 std::vector<glm::vec4> shade(const HairStrands& hair, const HairDistantLight& light,
-                             const HairRenderSettings& settings, glm::vec3 eye)
+                             const HairRenderSettings& settings, glm::vec3 eye,
+                             const Scene* opaque = nullptr)
 {
-    HairBuffers buffers = uploadHair(test::context(), hair, nullptr, {}, 1);
-    uploadHairLobes(test::context(), buffers, hair, nullptr, light, settings);
+    HairBuffers buffers = uploadHair(test::context(), hair, opaque, {}, 1);
+    uploadHairLobes(test::context(), buffers, hair, opaque, light, settings);
     RenderGraph graph(test::context());
     HairView view;
     view.eye = eye;
@@ -128,4 +129,31 @@ TEST_CASE("hair: a narrow lobe is shadowed along its axis, a wide one by the mea
     CHECK(mean == doctest::Approx(0.5).epsilon(0.01)); // 4 of 8 directions
     CHECK(front < 0.3f);
     CHECK(back > 0.7f);
+}
+
+TEST_CASE("hair: a closed room hides the sky, but not the light field that it has made itself")
+{
+    HairStrands hair;
+    addStrand(hair, {{-10.0f, 0.0f, 0.0f}, {10.0f, 0.0f, 0.0f}}, 0.1f);
+    Scene room; // a wall far to the right of the strand and one within its bounds to the left
+    for (const float x : {300.0f, -5.0f})
+        for (const glm::vec2 p : {glm::vec2(-400.0f, -400.0f), glm::vec2(400.0f, -400.0f),
+                                  glm::vec2(400.0f, 400.0f), glm::vec2(-400.0f, 400.0f)})
+            room.vertices.push_back({.position = {x, p}});
+    room.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    room.triangleMaterials = {0, 0, 0, 0};
+    room.materials.push_back({.name = "wall"});
+    HairRenderSettings settings = plainSettings(32);
+    settings.shadows = true;
+    settings.shadowSize = 64;
+    const auto visible = [&](float towards, bool local) {
+        HairDistantLight light;
+        light.lobes = {lobe({towards, 0.3f, 0.0f}, 100.0f, glm::vec3(1.0f), 1.0f)};
+        light.mapped = 1;
+        light.local = local;
+        return shade(hair, light, settings, {0.0f, 0.0f, 200.0f}, &room)[1].w;
+    };
+    CHECK(visible(1.0f, false) == 0.0f);
+    CHECK(visible(1.0f, true) == 1.0f);
+    CHECK(visible(-1.0f, true) == 0.0f); // what stands among the hair does
 }
