@@ -166,7 +166,8 @@ std::vector<StressRow> stressScattering(Context& context, const StressSettings& 
 {
     std::vector<StressRow> rows;
     stressSpecular(context, gpu::kStressMixture, "glossy, mixture", 5e-4, settings, rows);
-    stressSpecular(context, gpu::kStressNdf, "glossy, NDF filter", 5e-4, settings, rows);
+    // At grazing views the half vector is the small sum of nearly opposed directions.
+    stressSpecular(context, gpu::kStressNdf, "glossy, NDF filter", 5e-3, settings, rows);
     stressSpecular(context, gpu::kStressAsg, "glossy, ASG", 5e-4, settings, rows);
     stressBrdf(context, settings, rows);
     stressHair(context, settings, rows);

@@ -38,7 +38,7 @@ void stressRgb9e5(Context& context, const StressSettings& s, std::vector<StressR
                    value[m].require(clamps || inRange(item.a[c], 0.0f, gpu::kRgb9e5Maximum), text);
                    if (!clamps) // half a step, which is at least 2^-25
                        value[m].compare(double(out.x[c]), double(item.a[c]),
-                                        std::max(brightest / 512.0, std::exp2(-25.0)), text);
+                                        std::max(brightest / 511.0, std::exp2(-25.0)), text);
                }
            });
     append(rows, value);
@@ -82,7 +82,7 @@ void stressLobeCoding(SglStorage storage, const StressSettings& s, std::vector<S
     // most stretched.
     Tally axis(name + " axis", half ? 6.5e-5 : 1.04e-3, "radians");
     Tally sharpness(name + " ln sharpness", half ? 0.00391 : 30.0 / 255.0 / 2.0 * 1.001, "1");
-    Tally amplitude(name + " amplitude", half ? std::exp2(-11.0) : 1.0 / 512.0,
+    Tally amplitude(name + " amplitude", half ? std::exp2(-11.0) : 1.0 / 511.0,
                     "brightest channel");
     for (int decade = -28; decade <= 34; decade += 2) {
         const SgField field =

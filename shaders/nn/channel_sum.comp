@@ -22,9 +22,14 @@ void main()
     uint n = pixel / plane;
     uint inPlane = pixel - n * plane;
     uint address = push.tensor.offset + n * push.tensor.imageStride + channel * plane + inPlane;
-    float sum = 0.0;
+    // Kahan's sum: `precise`, or the compiler proves the correction to be zero.
+    precise float sum = 0.0;
+    precise float lost = 0.0;
     for (; pixel < end; ++pixel) {
-        sum += imageLoad(tensor, int(address)).x;
+        precise float term = imageLoad(tensor, int(address)).x - lost;
+        precise float total = sum + term;
+        lost = (total - sum) - term;
+        sum = total;
         inPlane += 1;
         bool newImage = inPlane == plane;
         inPlane = newImage ? 0 : inPlane;

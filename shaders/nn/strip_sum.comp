@@ -15,8 +15,14 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i >= push.count)
         return;
-    float sum = 0.0;
-    for (uint s = 0; s < push.strips; ++s)
-        sum += imageLoad(strips, int(s * push.count + i)).x;
+    // Kahan's sum: `precise`, or the compiler proves the correction to be zero.
+    precise float sum = 0.0;
+    precise float lost = 0.0;
+    for (uint s = 0; s < push.strips; ++s) {
+        precise float term = imageLoad(strips, int(s * push.count + i)).x - lost;
+        precise float total = sum + term;
+        lost = (total - sum) - term;
+        sum = total;
+    }
     result[push.resultOffset + i] += sum;
 }

@@ -89,6 +89,7 @@ struct HairAngles
     float sinO;
     float cosO;
     float cosPhi;
+    float cosHalfPhi;
 };
 
 STRANDLIGHT_FN HairAngles hairAngles(vec3 tangent, vec3 light, vec3 view)
@@ -103,6 +104,8 @@ STRANDLIGHT_FN HairAngles hairAngles(vec3 tangent, vec3 light, vec3 view)
     // Along the fibre there is no azimuth: any will do.
     float lengths = a.cosI * a.cosO;
     a.cosPhi = lengths > 1e-12f ? clamp(dot(acrossI, acrossO) / lengths, -1.0f, 1.0f) : 1.0f;
+    // Half the sum of the two unit vectors: near phi = pi, sqrt(0.5 + 0.5 cosPhi) keeps four digits at most.
+    a.cosHalfPhi = lengths > 1e-12f ? min(0.5f * length(acrossI / a.cosI + acrossO / a.cosO), 1.0f) : 1.0f;
     return a;
 }
 
@@ -147,7 +150,7 @@ STRANDLIGHT_FN vec3 hairLobeSum(HairAngles a, float throughCosPhi, vec3 azimuth,
 STRANDLIGHT_FN vec3 hairScatter(vec3 tangent, vec3 light, vec3 view, vec3 color, float roughness, float tilt)
 {
     HairAngles a = hairAngles(tangent, light, view);
-    vec3 azimuth = vec3(0.25f * hairCosHalf(a.cosPhi), kHairNormTT * exp(-kHairSharpnessTT * (a.cosPhi + 1.0f)),
+    vec3 azimuth = vec3(0.25f * a.cosHalfPhi, kHairNormTT * exp(-kHairSharpnessTT * (a.cosPhi + 1.0f)),
                         kHairNormTRT * exp(kHairSharpnessTRT * (a.cosPhi - 1.0f)));
     float variance = hairVariance(roughness);
     return hairLobeSum(a, a.cosPhi, azimuth, vec3(variance, 0.25f * variance, 4.0f * variance), color, tilt);

@@ -66,7 +66,7 @@ STRANDLIGHT_FN vec3 hairScatterLobe(vec3 tangent, vec3 axis, float sharpness, ve
     float share = vonMisesMeanLength(around.x);
     float through = vonMisesSharpness(vonMisesMeanLength(kHairSharpnessTT) * vonMisesMeanLength(around.y));
     float twice = vonMisesSharpness(vonMisesMeanLength(kHairSharpnessTRT) * vonMisesMeanLength(around.z));
-    vec3 azimuth = vec3(mix(0.159154943f, 0.25f * hairCosHalf(a.cosPhi), share), vonMisesDensity(through, -a.cosPhi),
+    vec3 azimuth = vec3(mix(0.159154943f, 0.25f * a.cosHalfPhi, share), vonMisesDensity(through, -a.cosPhi),
                         vonMisesDensity(twice, a.cosPhi));
 
     // Pigment is met at the mean azimuth of light times TT.

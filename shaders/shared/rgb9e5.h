@@ -34,7 +34,7 @@ STRANDLIGHT_FN float rgb9e5ClampChannel(float v)
     return v > 0.0f ? (v < kRgb9e5Maximum ? v : kRgb9e5Maximum) : 0.0f;
 }
 
-// Rounds to nearest. Error per channel: at most half a step, max(r, g, b) / 512, and at least 2^-25.
+// Rounds to nearest. Error per channel: at most half a step, max(r, g, b) / 511 or 2^-25.
 STRANDLIGHT_FN uint packRgb9e5(vec3 c)
 {
     float r = rgb9e5ClampChannel(c.x);

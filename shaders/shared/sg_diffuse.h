@@ -75,7 +75,7 @@ STRANDLIGHT_FN float sgCosineLower(float lambda)
     return e * (oneMinusExpOverX(lambda) - e) / lambda;
 }
 
-// Integral of SG times clamped cosine over the sphere: irradiance of a unit lobe. Error <= 1.2e-3 of the lobe's energy.
+// Integral of SG times clamped cosine over the sphere: irradiance of a unit lobe. Error <= 1.3e-3 of the lobe's energy.
 STRANDLIGHT_FN float sgIrradiance(float lambda, float cosine)
 {
     float t = lambda * sqrt(((lambda + 2.73608316f) * lambda + 17.02129778f) /
