@@ -34,17 +34,11 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
     const BufferId from = pass.read(source.buffer);
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
-    const BackwardEpilogue& epilogue = conv.backward;
-    const bool derivative = epilogue.activated.has_value();
-    const BufferId saved = derivative ? pass.read(epilogue.activated->buffer) : from;
-    const gpu::TensorView savedView = derivative ? epilogue.activated->view() : gpu::TensorView{};
-    const std::uint32_t flags = (conv.bias ? gpu::kConvBias : 0) |
-                                (epilogue.accumulate ? gpu::kConvAccumulate : 0) |
-                                (derivative ? gpu::kConvDerivative : 0) | shuffleFlag(graph);
+    const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
     gpu::ConvPush push{.source = source.view(),
                        .result = result.view(),
-                       .savedOffset = savedView.offset,
-                       .savedImageStride = savedView.imageStride,
+                       .savedOffset = epilogue.savedView.offset,
+                       .savedImageStride = epilogue.savedView.imageStride,
                        .inChannels = source.desc.c,
                        .outChannels = result.desc.c,
                        .weightOffset = weights.weightOffset,
@@ -60,7 +54,7 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
                        .transposed = conv.transposed ? 1u : 0u,
                        .firstPixel = 0,
                        .endPixel = grid,
-                       .slope = derivative ? epilogue.slope : conv.slope};
+                       .slope = epilogue.slope};
 
     // Slices of pixels, whole tiles each.
     const std::uint64_t workPerPixel = taps * source.desc.c * result.desc.c * phases.h * phases.w;
@@ -73,7 +67,8 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
         const std::uint32_t threads = divideUp(push.endPixel - first, tile) * kConvLanes;
         pass.dispatch(kernels::conv,
                       {threads, divideUp(result.desc.c, channelTile), phases.h * phases.w}, push,
-                      {from, parameters, saved, to}, {channelTile, kPixelTile, turn, flags});
+                      {from, parameters, epilogue.saved, to},
+                      {channelTile, kPixelTile, turn, epilogue.flags});
     }
     return result.as(to);
 }

@@ -35,18 +35,11 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     const BufferId from = pass.read(source.buffer);
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
-    const BackwardEpilogue& epilogue = conv.backward;
-    const bool derivative = epilogue.activated.has_value();
-    const BufferId saved = derivative ? pass.read(epilogue.activated->buffer) : from;
-    const gpu::TensorView savedView = derivative ? epilogue.activated->view() : gpu::TensorView{};
-    const std::uint32_t flags = (conv.bias ? gpu::kConvBias : 0) |
-                                (epilogue.accumulate ? gpu::kConvAccumulate : 0) |
-                                (derivative ? gpu::kConvDerivative : 0) |
-                                (conv.tiles ? gpu::kConvTiles : 0) | shuffleFlag(graph);
+    const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
     gpu::ConvRowsPush push{.source = source.view(),
                            .result = result.view(),
-                           .savedOffset = savedView.offset,
-                           .savedImageStride = savedView.imageStride,
+                           .savedOffset = epilogue.savedView.offset,
+                           .savedImageStride = epilogue.savedView.imageStride,
                            .inChannels = source.desc.c,
                            .outChannels = result.desc.c,
                            .weightOffset = weights.weightOffset,
@@ -56,7 +49,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
                            .firstChannel = 0,
                            .firstStrip = 0,
                            .endStrip = strips,
-                           .slope = derivative ? epilogue.slope : conv.slope};
+                           .slope = epilogue.slope};
     const std::uint32_t stripsPerTile =
         (gpu::kConvTileWidth / (scale.w * tile.columns)) * (gpu::kConvTileHeight / scale.h);
     const std::vector<std::uint32_t> constants = {conv.tiles ? stripsPerTile : kGroup,
@@ -69,7 +62,8 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
                                                   conv.stride.w,
                                                   conv.padding.h,
                                                   conv.padding.w,
-                                                  flags};
+                                                  epilogue.flags |
+                                                      (conv.tiles ? gpu::kConvTiles : 0)};
     const KernelBlob& kernel = conv.transposed ? kernels::conv_transpose_rows : kernels::conv_rows;
 
     if (conv.tiles) { // cut by blocks of channels, as if all tiles were active
@@ -81,7 +75,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
             push.firstChannel = first * channels;
             pass.dispatchIndirect(kernel, conv.tiles->arguments,
                                   (std::min(slice, blocks - first) - 1) * 12u, push,
-                                  {from, parameters, saved, tiles, to}, constants);
+                                  {from, parameters, epilogue.saved, tiles, to}, constants);
         }
         return result.as(to);
     }
@@ -92,7 +86,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
         push.firstStrip = first;
         push.endStrip = std::min(strips, first + slice);
         pass.dispatch(kernel, {push.endStrip - first, blocks, 1}, push,
-                      {from, parameters, saved, from, to}, constants);
+                      {from, parameters, epilogue.saved, from, to}, constants);
     }
     return result.as(to);
 }

@@ -1,8 +1,9 @@
-// How the convolution passes cut their work; internal to them.
+// How the convolution passes cut their work and bind what comes after the sum; internal to them.
 #pragma once
 
 #include <cstdint>
 
+#include "compute_nn/conv_passes.hpp"
 #include "engine/graph/render_graph.hpp"
 #include "shaders/shared/nn_types.h"
 
@@ -32,6 +33,31 @@ inline std::uint32_t unroll(std::uint32_t count, std::uint32_t limit)
 inline std::uint32_t shuffleFlag(const RenderGraph& graph)
 {
     return graph.context().subgroupSize() >= kConvLanes ? gpu::kConvShuffle : 0;
+}
+
+// What a convolution kernel does besides the sum, as it binds and specialises it.
+struct ConvEpilogue
+{
+    BufferId saved; // the activated values; without them the source, which nothing reads
+    gpu::TensorView savedView{};
+    std::uint32_t flags = 0;
+    float slope = 1.0f;
+};
+
+inline ConvEpilogue bindEpilogue(const RenderGraph& graph, PassBuilder& pass, const ConvPass& conv,
+                                 BufferId source)
+{
+    const BackwardEpilogue& backward = conv.backward;
+    ConvEpilogue epilogue{.saved = source, .slope = conv.slope};
+    epilogue.flags = (conv.bias ? gpu::kConvBias : 0) |
+                     (backward.accumulate ? gpu::kConvAccumulate : 0) | shuffleFlag(graph);
+    if (backward.activated) {
+        epilogue.saved = pass.read(backward.activated->buffer);
+        epilogue.savedView = backward.activated->view();
+        epilogue.flags |= gpu::kConvDerivative;
+        epilogue.slope = backward.slope;
+    }
+    return epilogue;
 }
 
 } // namespace strandlight
