@@ -5,7 +5,7 @@
 
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "engine/base/assert.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

@@ -8,7 +8,7 @@
 #include "compute_nn/conv_work.hpp"
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

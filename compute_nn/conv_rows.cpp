@@ -6,7 +6,7 @@
 #include "compute_nn/conv_work.hpp"
 #include "compute_nn/tile_list.hpp"
 #include "engine/base/assert.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

@@ -4,7 +4,7 @@
 #include "compute_nn/conv_passes.hpp"
 #include "compute_nn/conv_work.hpp"
 #include "engine/base/assert.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

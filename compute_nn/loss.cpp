@@ -5,7 +5,7 @@
 
 #include "compute_nn/sum.hpp"
 #include "engine/base/assert.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

@@ -5,7 +5,7 @@
 
 #include "compute_nn/tensor.hpp"
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "kernels.gen.hpp"
+#include "kernels/nn.gen.hpp"
 
 namespace strandlight {
 

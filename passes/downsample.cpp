@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/post.gen.hpp"
 #include "shaders/shared/shade_types.h"
 
 namespace strandlight {

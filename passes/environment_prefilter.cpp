@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/base/log.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/env.gen.hpp"
 #include "shaders/shared/sampling.h"
 
 namespace strandlight {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/gbuffer.gen.hpp"
 #include "shaders/shared/gbuffer_types.h"
 
 namespace strandlight {

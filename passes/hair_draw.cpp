@@ -1,6 +1,6 @@
 #include "passes/hair_draw.hpp"
 
-#include "kernels.gen.hpp"
+#include "kernels/hair.gen.hpp"
 
 namespace strandlight {
 

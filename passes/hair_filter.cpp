@@ -6,7 +6,7 @@
 
 #include "compute_nn/unet.hpp"
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/hair.gen.hpp"
 
 namespace strandlight {
 namespace {

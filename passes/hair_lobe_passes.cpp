@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "kernels.gen.hpp"
+#include "kernels/hair.gen.hpp"
 #include "passes/hair_draw.hpp"
 
 namespace strandlight {

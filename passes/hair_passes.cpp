@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/hair.gen.hpp"
 #include "passes/hair_draw.hpp"
 
 namespace strandlight {

@@ -9,7 +9,7 @@
 #include "engine/base/file.hpp"
 #include "engine/base/log.hpp"
 #include "engine/base/progress.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/trace.gen.hpp"
 #include "passes/lightfield_capture_state.hpp"
 #include "shaders/shared/rgb9e5.h"
 

@@ -8,7 +8,7 @@
 #include "engine/base/log.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/camera.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/trace.gen.hpp"
 #include "passes/slice_planner.hpp"
 #include "shaders/shared/path_types.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/assert.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/sg.gen.hpp"
 #include "shaders/shared/punctual_types.h"
 
 namespace strandlight {

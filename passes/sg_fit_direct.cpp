@@ -8,7 +8,7 @@
 
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/sg_fit.gen.hpp"
 #include "shaders/shared/sg_fit_types.h"
 
 namespace strandlight {

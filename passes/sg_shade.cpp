@@ -1,6 +1,6 @@
 #include "passes/sg_shade.hpp"
 
-#include "kernels.gen.hpp"
+#include "kernels/sg.gen.hpp"
 #include "shaders/shared/shade_types.h"
 
 namespace strandlight {

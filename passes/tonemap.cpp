@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernels.gen.hpp"
+#include "kernels/post.gen.hpp"
 #include "shaders/shared/shade_types.h"
 
 namespace strandlight {

@@ -3,7 +3,7 @@
 
 #include "engine/base/image_io.hpp"
 #include "engine/graph/render_graph.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/sample.gen.hpp"
 #include "shaders/shared/sample_types.h"
 
 int main()

@@ -1,7 +1,7 @@
 #include "passes/stress/closed_forms.hpp"
 
 #include "engine/graph/render_graph.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/stress.gen.hpp"
 
 namespace strandlight {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "kernels.gen.hpp"
+#include "kernels/bench.gen.hpp"
 #include "samples/strandlight/bench_kernels.hpp"
 #include "shaders/shared/bench_types.h"
 #include "shaders/shared/rng.h"

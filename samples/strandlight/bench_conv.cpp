@@ -2,7 +2,7 @@
 // places: the whole twin would take longer than all timings.
 #include "compute_nn/conv2d.hpp"
 #include "compute_nn/conv_transpose2d.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/bench.gen.hpp"
 #include "samples/strandlight/bench_conv_twin.hpp"
 #include "samples/strandlight/bench_kernels.hpp"
 #include "shaders/shared/bench_types.h"

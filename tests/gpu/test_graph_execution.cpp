@@ -6,7 +6,7 @@
 #include "engine/base/error.hpp"
 #include "engine/graph/plan.hpp"
 #include "engine/graph/render_graph.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/sample.gen.hpp"
 #include "shaders/shared/sample_types.h"
 #include "tests/support/gpu_fixture.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "engine/graph/render_graph.hpp"
 #include "engine/scene/texture_pool.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/scene.gen.hpp"
 #include "shaders/shared/environment.h"
 #include "shaders/shared/rng.h"
 #include "shaders/shared/scene_echo.h"

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/graph/render_graph.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/sg.gen.hpp"
 #include "shaders/shared/function_echo.h"
 #include "tests/support/gpu_fixture.hpp"
 

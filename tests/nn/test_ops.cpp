@@ -6,7 +6,6 @@
 #include "compute_nn/conv2d.hpp"
 #include "compute_nn/sg_mixture.hpp"
 #include "engine/base/error.hpp"
-#include "kernels.gen.hpp"
 #include "tests/nn/compare.hpp"
 #include "tests/nn/op_cases.hpp"
 #include "tests/support/gpu_fixture.hpp"

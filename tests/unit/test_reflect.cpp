@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/vk/reflect.hpp"
-#include "kernels.gen.hpp"
+#include "kernels/sample.gen.hpp"
 
 using namespace strandlight;
 
