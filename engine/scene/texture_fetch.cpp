@@ -15,8 +15,7 @@ int wrapTexel(int i, int size, std::uint32_t mode)
     if (mode == 1u)
         return std::clamp(i, 0, size - 1);
     const int period = mode == 2u ? 2 * size : size;
-    int m = i % period;
-    m = m < 0 ? m + period : m;
+    const int m = (i + period) % period;
     return m < size ? m : period - 1 - m;
 }
 

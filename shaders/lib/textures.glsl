@@ -31,14 +31,14 @@ float srgbToLinear(float c)
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
 
-// Texel index along one axis after wrapping: 0 repeat, 1 clamp, 2 mirrored repeat.
+// Texel index along one axis after wrapping: 0 repeat, 1 clamp, 2 mirrored repeat. The repeating ones take i >= -size:
+// the remainder of a negative number is undefined.
 int wrapTexel(int i, int size, uint mode)
 {
     if (mode == 1u)
         return clamp(i, 0, size - 1);
     int period = mode == 2u ? 2 * size : size;
-    int m = i % period;
-    m = m < 0 ? m + period : m;
+    int m = (i + period) % period;
     return m < size ? m : period - 1 - m;
 }
 
