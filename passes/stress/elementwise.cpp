@@ -1,5 +1,6 @@
 // Activations, losses and the optimiser under stress, through their public passes.
 #include <cmath>
+#include <limits>
 
 #include "compute_nn/activation.hpp"
 #include "compute_nn/adam.hpp"
@@ -57,8 +58,15 @@ void stressActivation(Context& context, const Activation& a, const std::string& 
         }
         const double expected = reference::activate<double>(a, in);
         value.compare(double(gotY[i]), expected, std::max(std::abs(expected), 1e-30), text);
-        slope.compare(double(gotD[i]), reference::activationDerivative<double>(a, expected), 1.0,
-                      text);
+        // A device may take subnormal numbers for zero: then a rectifier's slope is that of zero.
+        const bool subnormal =
+            in != 0.0 && std::abs(in) < double(std::numeric_limits<float>::min());
+        const double slopeAtZero = reference::activationDerivative<double>(a, 0.0);
+        if (subnormal && double(gotD[i]) == double(float(slopeAtZero)))
+            slope.require(true, text);
+        else
+            slope.compare(double(gotD[i]), reference::activationDerivative<double>(a, expected),
+                          1.0, text);
     }
     rows.push_back(value.row());
     rows.push_back(slope.row());

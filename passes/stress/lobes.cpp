@@ -164,8 +164,9 @@ void stressAxes(Context& context, const StressSettings& s, std::vector<StressRow
                    return axis[m].require(std::isnan(out.x.x), text); // shows
                const glm::dvec3 raw(item.a);
                const double length = glm::length(raw);
+               // Below 1e-30, by the sum of the components, a vector has no direction.
                const double error =
-                   !(length > 0.0) || !std::isfinite(length) || length > 3e38
+                   length < 1e-30 || !std::isfinite(length) || length > 3e38
                        ? glm::length(glm::dvec3(out.x)) - 1.0 // the fallback: any unit vector
                        : glm::length(glm::dvec3(out.x) - raw / length);
                axis[m].compare(error, 0.0, 1.0, text);

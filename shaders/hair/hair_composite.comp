@@ -40,7 +40,7 @@ void main()
     float brightness = nnExp(imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
     brightness = brightness < 0.0 ? 0.0 : brightness;
     float transmittance = exactHere + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;
-    transmittance = transmittance < 0.0 ? 0.0 : transmittance > 1.0 ? 1.0 : transmittance; // NaN stays
+    transmittance = keepNan(transmittance, clamp(transmittance, 0.0, 1.0));
 
     float weight[kFilterTaps];
     bool inside[kFilterTaps];

@@ -18,7 +18,7 @@ layout(push_constant, scalar) uniform Push { ElementPush push; };
 float forward(float x)
 {
     if (KIND == 1u)
-        return x > 0.0 || isnan(x) ? x : 0.0; // 0 * x would do, but compilers make it 0
+        return nnPositive(x); // 0 * x would do, but compilers make it 0
     if (KIND == 2u)
         return x > 0.0 ? x : push.slope * x;
     if (KIND == 3u)
@@ -26,7 +26,7 @@ float forward(float x)
     if (KIND == 4u)
         return nnSigmoid(x);
     if (KIND == 5u)
-        return nnLog1p(x < 0.0 ? 0.0 : x);
+        return nnLog1p(nnPositive(x));
     return x;
 }
 

@@ -6,12 +6,12 @@
 #include "nn/nn_math.glsl"
 
 // Logits to the softmax over the taps inside, 0 for the others. The largest logit is subtracted so that no exponential
-// overflows.
+// overflows. A NaN among them spreads through the sum.
 void filterWeights(inout float weight[kFilterTaps], bool inside[kFilterTaps])
 {
     float largest = uintBitsToFloat(0xff800000u);
     for (uint k = 0; k < kFilterTaps; ++k)
-        largest = inside[k] && !(weight[k] <= largest) ? weight[k] : largest; // NaN is taken and spreads
+        largest = inside[k] && weight[k] > largest ? weight[k] : largest;
     float sum = 0.0;
     for (uint k = 0; k < kFilterTaps; ++k) {
         weight[k] = inside[k] ? nnExp(weight[k] - largest) : 0.0;

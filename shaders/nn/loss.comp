@@ -46,8 +46,8 @@ void main()
                 derivative *= weight;
             }
         } else if (KIND == 2u) {
-            float q = p < 0.0 ? 0.0 : p;
-            float distance = nnLog1p(q) - nnLog1p(t < 0.0 ? 0.0 : t);
+            float q = nnPositive(p);
+            float distance = nnLog1p(q) - nnLog1p(nnPositive(t));
             value = distance * distance;
             derivative = 2.0 * distance / (1.0 + q);
         }

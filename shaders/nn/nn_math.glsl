@@ -3,6 +3,8 @@
 #ifndef STRANDLIGHT_NN_MATH_GLSL
 #define STRANDLIGHT_NN_MATH_GLSL
 
+#include "shared/nan_bits.h"
+
 // e^x as 2^k e^r, |r| <= ln(2)/2, Taylor to the sixth power. 0 below -87, infinity above 88.7.
 float nnExp(float x)
 {
@@ -17,7 +19,7 @@ float nnExp(float x)
     float value = p * uintBitsToFloat(uint(half0 + 127) << 23) * uintBitsToFloat(uint(half1 + 127) << 23);
     value = x < -87.0 ? 0.0 : value;
     value = x > 88.7 ? uintBitsToFloat(0x7f800000u) : value;
-    return x == x ? value : x;
+    return keepNan(x, value);
 }
 
 // 2^y for y <= 0: exactly 1 at 0, minimax of degree 5 on [-1/2, 1/2], within 2.3e-7. 0 below -100: what it weights must not
@@ -31,7 +33,9 @@ float nnExp2Negative(float y)
     float p = 1.0 + f * (0.6931469670639855 + f * (0.24022119722727053 + f * (0.05550713274200602 +
               f * (0.009675541396042944 + f * 0.0013276471945264257))));
     float value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
-    return y < -100.0 ? 0.0 : value;
+    // Whether y is in [-infinity, -100), by its bits: no NaN is.
+    bool tiny = floatBitsToUint(y) - 0xc2c80001u <= 0xff800000u - 0xc2c80001u;
+    return tiny ? 0.0 : value;
 }
 
 // ln(1 + x) for x >= 0: 1 + x = 2^k (1 + f), ln(1 + f) = 2 atanh(f / (2 + f)). For k = 0, f is x itself, so what the sum
@@ -46,6 +50,12 @@ float nnLog1p(float x)
     float series = 2.0 * s * (1.0 + z * (1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0))))));
     float value = float(k) * 0.69314718055994531 + series;
     return (bits & 0x7f800000u) == 0x7f800000u ? x : value;
+}
+
+// max(x, 0) that keeps NaN.
+float nnPositive(float x)
+{
+    return keepNan(x, x > 0.0 ? x : 0.0);
 }
 
 float nnSoftplus(float x)

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shared/nan_bits.h"
 #include "shared/shade_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -24,7 +25,7 @@ void main()
     }
     vec3 radiance = imageLoad(source, pixel).rgb * push.exposure;
     // A NaN shows as magenta instead of vanishing in the clamp.
-    bool broken = any(isnan(radiance));
+    bool broken = isNanByBits(radiance.x) || isNanByBits(radiance.y) || isNanByBits(radiance.z);
     vec3 color = broken ? vec3(1.0, 0.0, 1.0) : encodeSrgb(clamp(radiance, 0.0, 1.0));
     imageStore(result, pixel, vec4(color, 1.0));
 }

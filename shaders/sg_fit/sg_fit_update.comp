@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shared/nan_bits.h"
 #include "shared/sg_fit_types.h"
 
 layout(local_size_x = 64) in;
@@ -20,11 +21,6 @@ layout(binding = 7, rgba32f) uniform imageBuffer moments2;           // [lobe, t
 layout(binding = 8, scalar) buffer Counters { uint skippedSteps; };  // lobes whose gradient, moments or values were not finite
 
 layout(push_constant, scalar) uniform Push { SgFitUpdatePush push; };
-
-bool isFinite(float value)
-{
-    return !isnan(value) && !isinf(value);
-}
 
 void main()
 {
@@ -83,7 +79,7 @@ void main()
     vec3 mAmplitude = kSgFitBeta1 * imageLoad(moments1, second).xyz + (1.0 - kSgFitBeta1) * dAmplitude;
     // Also what the step starts from: max() and clamp() below would hide a NaN.
     float all = dot(v, vec3(1.0)) + dot(abs(mShape) + abs(shape), vec4(1.0)) + dot(abs(mAmplitude) + abs(amplitude), vec3(1.0));
-    if (isFinite(all)) {
+    if (isFiniteByBits(all)) {
         imageStore(moments2, group, vec4(v, 0.0));
         imageStore(moments1, first, mShape);
         imageStore(moments1, second, vec4(mAmplitude, 0.0));

@@ -5,8 +5,10 @@
 #define STRANDLIGHT_SHARED_HAIR_MASKS_H
 
 #ifdef __cplusplus
+#include "shaders/shared/nan_bits.h"
 #include "shaders/shared/rng.h"
 #else
+#include "shared/nan_bits.h"
 #include "shared/rng.h"
 #endif
 
@@ -43,7 +45,7 @@ STRANDLIGHT_FN uint hairMaskOfCount(uint k, uint bits)
 // A mask whose expected share of samples is alpha. NaN gives no sample.
 STRANDLIGHT_FN uint hairSampleMask(float alpha, uvec3 bits)
 {
-    if (!(alpha > 0.0f)) {
+    if (alpha <= 0.0f || isNanByBits(alpha)) {
         return 0u;
     }
     float share = min(alpha, 1.0f) * 4.0f;

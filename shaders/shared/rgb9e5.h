@@ -4,9 +4,9 @@
 #define STRANDLIGHT_SHARED_RGB9E5_H
 
 #ifdef __cplusplus
-#include "shaders/shared/gpu_types.h"
+#include "shaders/shared/nan_bits.h"
 #else
-#include "shared/gpu_types.h"
+#include "shared/nan_bits.h"
 #endif
 
 STRANDLIGHT_SHARED_BEGIN
@@ -24,14 +24,14 @@ STRANDLIGHT_FN bool rgb9e5Clamps(vec3 c)
 {
     bool inside = c.x >= 0.0f && c.y >= 0.0f && c.z >= 0.0f && c.x <= kRgb9e5Maximum &&
                   c.y <= kRgb9e5Maximum && c.z <= kRgb9e5Maximum;
-    return !inside;
+    return !inside || isNanByBits(c.x + c.y + c.z);
 }
 
 // One channel inside the range of the format. A NaN becomes 0; rgb9e5Clamps() is how the caller
 // counts it.
 STRANDLIGHT_FN float rgb9e5ClampChannel(float v)
 {
-    return v > 0.0f ? (v < kRgb9e5Maximum ? v : kRgb9e5Maximum) : 0.0f;
+    return v > 0.0f && !isNanByBits(v) ? (v < kRgb9e5Maximum ? v : kRgb9e5Maximum) : 0.0f;
 }
 
 // Rounds to nearest. Error per channel: at most half a step, max(r, g, b) / 511 or 2^-25.

@@ -8,8 +8,10 @@
 #define STRANDLIGHT_SHARED_SG_H
 
 #ifdef __cplusplus
+#include "shaders/shared/nan_bits.h"
 #include "shaders/shared/sampling.h"
 #else
+#include "shared/nan_bits.h"
 #include "shared/sampling.h"
 #endif
 
@@ -32,15 +34,18 @@ STRANDLIGHT_FN float oneMinusExpOverX(float x)
     return (1.0f - exp(-x)) / x;
 }
 
-// A unit vector along v, `fallback` when v has no direction: zero, infinite or beyond 3e38. NaN stays NaN, so it shows.
+// A unit vector along v, `fallback` when v has no direction: below 1e-30, where a device may flush components to zero,
+// or beyond 3e38. NaN stays NaN, so it shows.
 STRANDLIGHT_FN vec3 safeNormalize(vec3 v, vec3 fallback)
 {
     float size = abs(v.x) + abs(v.y) + abs(v.z); // a sum, not max(), which may drop a NaN
-    if (size == 0.0f || size > 3.0e38f) {
+    if (!isNanByBits(size) && (size < 1.0e-30f || size > 3.0e38f)) {
         return fallback;
     }
-    // Two steps, so that neither tiny nor huge components leave the range of fp32 when squared.
-    vec3 scaled = v / size;
+    // By a power of two first, so that neither squares nor reciprocals leave the range of fp32.
+    float large = 1180591620717411303424.0f; // 2^70
+    float scale = size > 1.0e18f ? 1.0f / large : (size < 1.0e-18f ? large : 1.0f);
+    vec3 scaled = v * scale;
     return scaled / length(scaled);
 }
 

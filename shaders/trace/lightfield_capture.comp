@@ -7,6 +7,7 @@
 
 layout(constant_id = 0) const uint kFeatures = 0u;
 
+#include "shared/nan_bits.h"
 #include "shared/path_types.h"
 #include "shared/scene_types.h"
 
@@ -78,7 +79,7 @@ void main()
         advancePath(path, context);
         path.alive = path.alive && !below;
         if (!path.alive) {
-            bool finite = !any(isnan(path.radiance)) && !any(isinf(path.radiance));
+            bool finite = areFiniteByBits(path.radiance);
             sum.xyz += finite ? path.radiance : vec3(0.0);
             rejected += finite ? 0u : 1u;
             skySum += path.sky;

@@ -7,6 +7,7 @@
 
 layout(constant_id = 0) const uint kFeatures = 0u;
 
+#include "shared/nan_bits.h"
 #include "shared/path_types.h"
 #include "shared/scene_types.h"
 
@@ -55,7 +56,7 @@ void main()
         advancePath(path, context);
         if (!path.alive) {
             vec3 radiance = path.radiance + path.sky;
-            bool finite = !any(isnan(radiance)) && !any(isinf(radiance));
+            bool finite = areFiniteByBits(radiance);
             sum.xyz += finite ? radiance : vec3(0.0);
             rejected += finite ? 0u : 1u;
             done += 1u;

@@ -98,7 +98,8 @@ TEST_CASE("hair network input: values of a ribbon and of nothing")
         CAPTURE(s);
         // In the middle; half floats keep 11 bits, the light is that of the strand's middle.
         CHECK(input.at(0, s, 16, 16) == doctest::Approx(std::log1p(brightness)).epsilon(0.02));
-        CHECK(input.at(1, s, 16, 16) == 1.0f);
+        // Interpolation may end just below 1, and storage as a half may truncate: one step.
+        CHECK(std::abs(input.at(1, s, 16, 16) - 1.0f) <= 1.0f / 2048.0f);
         CHECK(input.at(2, s, 16, 16) == 0.0f);
         CHECK(input.at(3, s, 16, 16) == doctest::Approx(0.5f).epsilon(2e-3));
         // Up to the right is y down negative: (2, -1) / sqrt 5, of which the double angle has
