@@ -170,6 +170,16 @@ HairTraining trainHairNet(Context& context, const HairPool& pool, const HairTrai
     return Trainer(context, pool, settings).run();
 }
 
+TrainingMemory hairTrainingMemory(Context& context, const HairTrainSettings& settings)
+{
+    const UNetDesc net = hairUNet(settings.net);
+    Parameters parameters(context, net.parameters(), settings.seed);
+    RenderGraph graph(context);
+    ParameterIds ids(graph, parameters);
+    addHairTrainingStep(graph, net, ids, makeHairBatch(settings.batch, settings.crop), {}, 1);
+    return planTrainingMemory(parameters.layout(), graph.compile());
+}
+
 double hairLearningRate(const HairTrainSettings& settings, std::uint32_t step)
 {
     const double t = double(step) / double(settings.steps);

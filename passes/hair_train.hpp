@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compute_nn/training_memory.hpp"
 #include "passes/hair_training_pool.hpp"
 #include "passes/hair_validation.hpp"
 
@@ -49,6 +50,10 @@ struct HairTraining
 // fit, Interrupted when the user stops: the checkpoint then holds all steps taken.
 HairTraining trainHairNet(Context& context, const HairPool& pool,
                           const HairTrainSettings& settings);
+
+// What a step with these settings will allocate: net, batch and crop. Throws Error for a size that
+// the network does not take.
+TrainingMemory hairTrainingMemory(Context& context, const HairTrainSettings& settings);
 
 double hairLearningRate(const HairTrainSettings& settings, std::uint32_t step); // from 0
 

@@ -41,6 +41,16 @@ bool liesInside(const std::uint32_t* kinds, bool black)
 
 } // namespace
 
+std::uint64_t lightfieldCaptureBytes(std::uint64_t texels, std::uint32_t size, bool environment)
+{
+    const std::uint64_t cells = std::uint64_t(size) * size;
+    const std::uint64_t slice = std::max<std::uint64_t>(1, kSliceCells / cells); // texels
+    const std::uint64_t words =
+        gpu::kTraceCounters + slice * gpu::kPrimaryKinds + texels * cells * (environment ? 2 : 1);
+    return texels * sizeof(gpu::CapturePoint) + slice * cells * 2 * sizeof(glm::vec4) +
+           words * sizeof(std::uint32_t);
+}
+
 LightfieldPart& LightfieldCapture::State::partOf(std::uint32_t texel)
 {
     const auto part = std::find_if(field.parts.begin(), field.parts.end(), [&](const auto& p) {

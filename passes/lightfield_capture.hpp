@@ -24,6 +24,9 @@ struct CaptureSettings
     std::uint32_t cellsPerDispatch = 0; // 0: chosen from measured time; results do not depend on it
 };
 
+// What LightfieldCapture allocates.
+std::uint64_t lightfieldCaptureBytes(std::uint64_t texels, std::uint32_t size, bool environment);
+
 class LightfieldCapture
 {
 public:

@@ -265,4 +265,25 @@ SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSett
     return encodeAll(context, encoder, problem);
 }
 
+TrainingMemory encoderTrainingMemory(Context& context, std::uint32_t imageSize, std::uint32_t lobes)
+{
+    EncoderDesc net;
+    net.imageSize = imageSize;
+    net.lobes = lobes;
+    const TensorDesc input = net.input(kTexelsPerStep);
+    const std::vector<float> zeros(std::max<std::size_t>(input.elements(), input.pixels() * 3));
+    Parameters parameters(context, net.parameters(), 1);
+    RenderGraph graph(context);
+    ParameterIds ids(graph, parameters);
+    EncoderTraining training;
+    training.weights = LossWeights{
+        graph.uploadBuffer("weights", std::span(zeros).first(input.pixels())), input.pixels(), 1};
+    const EncoderStep step = addEncoderTrainingStep(
+        graph, net, ids,
+        uploadTensor(graph, "light-field images", input, std::span(zeros).first(input.elements())),
+        graph.uploadBuffer("directions", std::span(zeros).first(input.pixels() * 3)), training, 1);
+    graph.output(step.loss);
+    return planTrainingMemory(parameters.layout(), graph.compile());
+}
+
 } // namespace strandlight

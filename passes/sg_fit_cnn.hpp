@@ -4,6 +4,7 @@
 // Illumination. 2020
 #pragma once
 
+#include "compute_nn/training_memory.hpp"
 #include "engine/vk/context.hpp"
 #include "passes/sg_field.hpp"
 #include "passes/sg_fit_cells.hpp"
@@ -17,5 +18,9 @@ namespace strandlight {
 // skippedSteps of `statistics`. Deterministic. Throws Interrupted when the user stops.
 SgField fitLobesByCnn(Context& context, const FitProblem& problem, const FitSettings& settings,
                       FitStatistics& statistics, FitWatch* watch = nullptr);
+
+// What a training step of that encoder will allocate, for light-field images of `imageSize` a side.
+TrainingMemory encoderTrainingMemory(Context& context, std::uint32_t imageSize,
+                                     std::uint32_t lobes);
 
 } // namespace strandlight

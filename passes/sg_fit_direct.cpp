@@ -43,6 +43,12 @@ void checkLimit(const Context& context, const char* what, std::uint64_t words)
             "; use a smaller atlas or fewer lobes");
 }
 
+std::vector<SgFitChunk> chunksOf(const Context& context, const FitProblem& problem)
+{
+    return splitFitCells(problem, std::min(kTexelBufferWords * 4, context.maxStorageBufferBytes()),
+                         kCellsPerDispatch);
+}
+
 } // namespace
 
 std::vector<SgFitChunk> splitFitCells(const FitProblem& problem, std::uint64_t imageBytes,
@@ -70,6 +76,21 @@ std::vector<SgFitChunk> splitFitCells(const FitProblem& problem, std::uint64_t i
         chunks.push_back(chunk);
     }
     return chunks;
+}
+
+std::uint64_t directFitBytes(const Context& context, const FitProblem& problem)
+{
+    const std::uint64_t texels = problem.texelCount(), cells = problem.cells.cellCount;
+    const std::uint64_t lobeBytes = problem.lobes * gpu::kSgFitLobeFloats * sizeof(float);
+    std::uint64_t bytes = 0;
+    for (const SgFitChunk& chunk : chunksOf(context, problem))
+        bytes += std::uint64_t(chunk.texelCount) * problem.directionCount() * 4;
+    bytes += cells * 16 + texels * (16 + 16 + 4); // corners, gather, neighbours, scales
+    bytes += problem.directionCount() * sizeof(glm::vec4);
+    bytes += 3 * lobeBytes * texels;  // parameters before and after, first moments
+    bytes += lobeBytes * texels / 2;  // second moments
+    bytes += (lobeBytes + 4) * cells; // gradients, losses
+    return bytes + 4;                 // the counter
 }
 
 void addSgFitStepPass(RenderGraph& graph, const SgFitShape& shape, SgFitStepIds& ids,
@@ -146,9 +167,7 @@ DirectFit::DirectFit(Context& context, const FitProblem& problem, const FitSetti
     shape_.minimumLogSharpness = problem.minimumLogSharpness;
     shape_.maximumLogSharpness = problem.maximumLogSharpness;
     shape_.settings = settings;
-    shape_.chunks =
-        splitFitCells(problem, std::min(kTexelBufferWords * 4, context.maxStorageBufferBytes()),
-                      kCellsPerDispatch);
+    shape_.chunks = chunksOf(context, problem);
 
     for (const SgFitChunk& chunk : shape_.chunks)
         images_.push_back(Buffer::from(context, imagesOf(problem, chunk), "fit images"));

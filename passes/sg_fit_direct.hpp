@@ -25,6 +25,9 @@ struct SgFitChunk
 std::vector<SgFitChunk> splitFitCells(const FitProblem& problem, std::uint64_t imageBytes,
                                       std::uint32_t maximumCells);
 
+// What DirectFit allocates for this problem, whose images may be missing.
+std::uint64_t directFitBytes(const Context& context, const FitProblem& problem);
+
 // The numbers of a fit that its passes need.
 struct SgFitShape
 {

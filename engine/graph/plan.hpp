@@ -52,6 +52,8 @@ GraphPlan planGraph(const GraphDescription& description);
 // One line a pass: what it waits for, reads and writes.
 std::string toText(const GraphPlan& plan);
 std::string toGraphviz(const GraphPlan& plan);
+// "  label              1.23 MiB\n": one line of a memory plan.
+std::string memoryLine(const std::string& label, std::uint64_t bytes);
 // Bytes of the transients with and without shared memory, then the `largest` of them, one a line.
 std::string memoryText(const GraphPlan& plan, std::size_t largest = 6);
 

@@ -17,6 +17,13 @@ std::string mebibytes(std::uint64_t bytes)
 
 } // namespace
 
+std::string memoryLine(const std::string& label, std::uint64_t bytes)
+{
+    constexpr std::size_t kColumn = 26;
+    return "  " + label + std::string(kColumn - std::min(label.size(), kColumn), ' ') +
+           mebibytes(bytes) + "\n";
+}
+
 std::string memoryText(const GraphPlan& plan, std::size_t largest)
 {
     std::vector<std::uint32_t> live;
@@ -26,9 +33,9 @@ std::string memoryText(const GraphPlan& plan, std::size_t largest)
     const auto bytesOf = [&](std::uint32_t i) { return plan.description.resources[i].bytes(); };
     std::stable_sort(live.begin(), live.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return bytesOf(a) > bytesOf(b); });
-    std::string text = "  transients      " + mebibytes(plan.transientBytes) + " in " +
-                       std::to_string(live.size()) + "\n  sharing memory  " +
-                       mebibytes(plan.arenaBytes) + "\n";
+    std::string text =
+        memoryLine("transients, " + std::to_string(live.size()), plan.transientBytes) +
+        memoryLine("sharing memory", plan.arenaBytes);
     for (std::size_t k = 0; k < std::min(largest, live.size()); ++k) {
         const PlannedResource& r = plan.resources[live[k]];
         text += "    " + mebibytes(bytesOf(live[k])) + "  passes " + std::to_string(r.firstPass) +

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "passes/bake.hpp"
+#include "passes/bake_memory.hpp"
 #include "passes/sgl_file.hpp"
 #include "samples/strandlight/commands.hpp"
 #include "samples/strandlight/outputs.hpp"
@@ -23,6 +24,7 @@ struct Options
     std::string storage = "packed";
     std::string output;
     std::string json;
+    bool memory = false;
 };
 
 void addSettings(CLI::App& app, Options& o)
@@ -125,6 +127,10 @@ int run(Options& o)
     o.settings.checkpoint = checkpointOf(o.output);
     const Scene scene = openScene(o.scene);
     Context context = openDevice(o.device);
+    if (o.memory) {
+        std::printf("%s", planBakeMemory(context, scene, o.settings).text.c_str());
+        return 0;
+    }
 
     BakeStatistics statistics;
     const SgBake bake = bakeScene(context, scene, o.settings, &statistics);
@@ -147,6 +153,7 @@ Command addBake(CLI::App& parent)
     addSceneOptions(*app, o->scene);
     app->add_option("-o,--output", o->output, "The bake, .sgl")->required()->type_name("FILE");
     addSettings(*app, *o);
+    app->add_flag("--memory", o->memory, "Only print what the bake will allocate on the device");
     addJsonOption(*app, o->json);
     addDeviceOptions(*app, o->device);
     addExamples(*app, "  strandlight bake builtin:room -o room.sgl\n"

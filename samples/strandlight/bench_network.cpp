@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "compute_nn/reference/networks.hpp"
+#include "compute_nn/training_memory.hpp"
 #include "compute_nn/unet.hpp"
 #include "engine/graph/plan.hpp"
 #include "samples/strandlight/bench_conv_twin.hpp"
@@ -142,10 +143,7 @@ void printMemoryPlans(Context& context)
         RenderGraph graph(context);
         addStep(graph, c, parameters, c.input);
         std::printf("%s, one training step\n", c.name.c_str());
-        std::printf("  parameters      %s, with gradients and moments %s\n",
-                    bytesText(parameters.layout().count() * 4ull).c_str(),
-                    bytesText(parameters.layout().count() * 16ull).c_str());
-        std::printf("%s", memoryText(graph.compile()).c_str());
+        std::printf("%s", planTrainingMemory(parameters.layout(), graph.compile()).text.c_str());
     }
 }
 

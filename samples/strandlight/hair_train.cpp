@@ -29,6 +29,7 @@ struct Options
     std::string curve;
     std::string pictures;
     std::string json;
+    bool memory = false;
 };
 
 // What the weights were made with: enough to make them again.
@@ -130,6 +131,11 @@ int run(Options& o)
         Safetensors::load(o.initial); // a broken file is refused before the long work
     o.train.checkpoint = o.output + ".checkpoint";
     Context context = openDevice(o.device);
+    if (o.memory) {
+        std::printf("%s network, one training step of %u crops of %u pixels\n%s", o.net.c_str(),
+                    o.train.batch, o.train.crop, hairTrainingMemory(context, o.train).text.c_str());
+        return 0;
+    }
 
     const HairPool pool = openHairPool(context, o.pool);
     HairTraining training = trainHairNet(context, pool, o.train);
@@ -203,6 +209,7 @@ Command addHairTrain(CLI::App& parent)
     app->add_option("--pictures", o->pictures,
                     "4 and 64 samples averaged, the network's, the truth, of held-out frames")
         ->type_name("FOLDER");
+    app->add_flag("--memory", o->memory, "Only print what a training step will allocate");
     addJsonOption(*app, o->json);
     addDeviceOptions(*app, o->device);
     addExamples(*app, "  strandlight hair train --data frames -o net.safetensors --curve loss.svg\n"

@@ -24,6 +24,14 @@ Words bakeRoom(const std::string& output, const Words& settings)
 
 const Words kTiny{"--atlas", "16", "--lightfield", "8", "--spp", "2", "--steps", "40"};
 
+// Of the line "  at once, at most   1.23 MiB"; 0 without it.
+double plannedMebibytes(const std::string& output)
+{
+    const std::string label = "at once, at most";
+    const std::size_t at = output.find(label);
+    return at == std::string::npos ? 0.0 : std::stod(output.substr(at + label.size()));
+}
+
 // Interrupts a bake after ever shorter times until one is caught at work; true when one was.
 bool interruptBake(const std::string& output, const Words& settings)
 {
@@ -147,6 +155,14 @@ TEST_CASE("bake, info, render and reference, each with JSON")
     const nlohmann::json baked = run(bakeRoom(in("room.sgl"), kTiny), "bake.json");
     CHECK(baked["settings"]["atlas"] == 16);
     CHECK(baked["result"]["file_bytes"] == std::filesystem::file_size(in("room.sgl")));
+    // The plan, printed to a hundredth of a MiB, is what was allocated, but for staging where the
+    // host does not see the device's memory: that is at most as much again.
+    const double planned =
+        plannedMebibytes(runCommand(bakeRoom(in("none.sgl"), kTiny + Words{"--memory"})).output);
+    const double peak = baked["result"]["peak_device_bytes"].get<double>() / 1048576.0;
+    CHECK(planned < peak + 0.01);
+    CHECK(planned > 0.5 * peak);
+    CHECK_FALSE(std::filesystem::exists(in("none.sgl")));
 
     const nlohmann::json info = run({"info", in("room.sgl")}, "info.json");
     CHECK(info["bake"]["texels"] == baked["result"]["texels"]);

@@ -82,6 +82,19 @@ TEST_CASE("hair train writes weights, curve and log, and the same again")
     CHECK_FALSE(std::filesystem::exists(path("c.safetensors")));
 }
 
+TEST_CASE("hair train plans a step's memory without rendering or writing")
+{
+    const TemporaryFolder folder;
+    std::vector<std::string> arguments = train(folder, "w.safetensors", {"--batch", "2"});
+    arguments.push_back("--memory");
+    const CommandResult result = runCommand(arguments);
+    CAPTURE(result.errors);
+    REQUIRE(result.exitCode == 0);
+    CHECK(result.output.find("small network, one training step of 2 crops of 16 pixels") == 0);
+    CHECK(result.output.find("sharing memory") != std::string::npos);
+    CHECK(listFolder(folder.path()).empty());
+}
+
 TEST_CASE("hair train refuses what it cannot do, in one line")
 {
     const TemporaryFolder folder;
