@@ -50,9 +50,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
                            .firstStrip = 0,
                            .endStrip = strips,
                            .slope = epilogue.slope};
-    const std::uint32_t stripsPerTile =
-        (gpu::kConvTileWidth / (scale.w * tile.columns)) * (gpu::kConvTileHeight / scale.h);
-    const std::vector<std::uint32_t> constants = {conv.tiles ? stripsPerTile : kGroup,
+    const std::vector<std::uint32_t> constants = {kGroup,
                                                   channels,
                                                   tile.columns,
                                                   turn,
@@ -69,13 +67,16 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     if (conv.tiles) { // cut by blocks of channels, as if all tiles were active
         STRANDLIGHT_ASSERT_EQ(result.desc.n, 1u);
         const BufferId tiles = pass.read(conv.tiles->tiles);
-        const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
-            kDispatchWork / (blockWork * strips), 1, gpu::kConvTileBlocks));
+        const std::uint32_t stripsPerTile =
+            (gpu::kTileSide / (scale.w * tile.columns)) * (gpu::kTileSide / scale.h);
+        const std::uint32_t slice = std::uint32_t(
+            std::clamp<std::uint64_t>(kDispatchWork / (blockWork * strips), 1, gpu::kTileBlocks));
         for (std::uint32_t first = 0; first < blocks; first += slice) {
             push.firstChannel = first * channels;
-            pass.dispatchIndirect(kernel, conv.tiles->arguments,
-                                  (std::min(slice, blocks - first) - 1) * 12u, push,
-                                  {from, parameters, epilogue.saved, tiles, to}, constants);
+            pass.dispatchIndirect(
+                kernel, conv.tiles->arguments,
+                tileArguments(kGroup / stripsPerTile, std::min(slice, blocks - first)), push,
+                {from, parameters, epilogue.saved, tiles, to}, constants);
         }
         return result.as(to);
     }

@@ -21,7 +21,7 @@ constexpr bool kConv = false, kTransposed = true;
 // columns, 16 x 8 is the fastest. The others are chosen for about as many sums, not measured.
 constexpr Case kCpu[] = {
     {{kConv, {3, 3}, {1, 1}}, 8, {16, 8, 1}},      {{kConv, {3, 3}, {2, 2}}, 8, {16, 8, 1}},
-    {{kConv, {4, 4}, {2, 2}}, 8, {16, 5, 1}},      {{kConv, {2, 2}, {2, 2}}, 8, {16, 8, 2}},
+    {{kConv, {4, 4}, {2, 2}}, 8, {16, 4, 1}},      {{kConv, {2, 2}, {2, 2}}, 8, {16, 8, 2}},
     {{kConv, {1, 1}, {1, 1}}, 8, {16, 8, 4}},      {{kTransposed, {3, 3}, {1, 1}}, 8, {16, 8, 1}},
     {{kTransposed, {3, 3}, {2, 2}}, 8, {8, 4, 1}}, {{kTransposed, {4, 4}, {2, 2}}, 8, {8, 4, 1}},
     {{kTransposed, {2, 2}, {2, 2}}, 8, {8, 4, 4}},
@@ -40,8 +40,7 @@ constexpr bool dividesTiles(std::span<const Case> cases)
 {
     for (const Case& c : cases) {
         const Extent2 scale = c.shape.transposed ? c.shape.stride : Extent2{1, 1};
-        if (gpu::kConvTileHeight % scale.h != 0 ||
-            gpu::kConvTileWidth % (scale.w * c.tile.columns) != 0)
+        if (gpu::kTileSide % scale.h != 0 || gpu::kTileSide % (scale.w * c.tile.columns) != 0)
             return false;
     }
     return true;

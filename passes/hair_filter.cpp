@@ -74,7 +74,7 @@ void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const Te
     const gpu::HairCompositePush push{
         y.view(), size.x, size.y, rows.firstRow, std::min(rows.endRow, size.y), rows.tensorRow};
     if (tiles)
-        pass.dispatchIndirect(kernels::hair_composite, tiles->arguments, kPictureTiles, push,
+        pass.dispatchIndirect(kernels::hair_composite, tiles->arguments, tileArguments(1, 1), push,
                               {answer, mean, exact, over.filtered, over.radiance, list}, {1});
     else
         pass.dispatch(kernels::hair_composite, {y.desc.w, y.desc.h, 1}, push,

@@ -219,7 +219,7 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     const Binding shape(samples.shape, Filter::Nearest), transmittance(exact, Filter::Nearest);
     if (tiles) {
         const BufferId list = pass.read(tiles->tiles);
-        pass.dispatchIndirect(kernels::hair_input, tiles->arguments, kPictureTiles, push,
+        pass.dispatchIndirect(kernels::hair_input, tiles->arguments, tileArguments(1, 1), push,
                               {features, shape, transmittance, planes, list}, {1});
     } else {
         const std::uint32_t none[] = {0};

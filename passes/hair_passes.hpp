@@ -68,9 +68,6 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
                             float weight, std::uint32_t count = 4);
 
-// Record of a TileList's arguments for workgroups of 8x8 pixels (shaders/nn/tiles.glsl).
-inline constexpr std::uint64_t kPictureTiles = (gpu::kConvTileWidth / 8 - 1) * 12;
-
 // Adds weight times the mean illumination of the four samples to `sum`, R32F [height, width]; 0
 // counts where there is no hair. Throws Error when the samples came without features.
 ImageId addHairIlluminationPass(RenderGraph& graph, const HairSampleIds& samples, ImageId sum,

@@ -33,6 +33,8 @@ Timing timingOf(std::vector<double> milliseconds); // throws Error when empty
 // Runs the graph once to warm up (lavapipe compiles at the first dispatch), then `runs` times; the
 // sum of its passes by the device's clock. Throws Interrupted between runs.
 Timing timeGraph(RenderGraph& graph, std::uint32_t runs);
+// Medians by pass, in order, of another so many runs.
+std::vector<PassTiming> timePasses(RenderGraph& graph, std::uint32_t runs);
 
 std::string rowsText(const Json& rows); // as a table, columns as below
 

@@ -18,6 +18,7 @@ struct Options
     BenchOptions bench;
     std::string size = "640x384";
     std::uint32_t runs = 5;
+    bool byPass = false;
 };
 
 // Transmittance of a disc of hair that covers a share of the picture, as a head does.
@@ -43,6 +44,7 @@ CpuImage disc(Size size, double share)
 struct Run
 {
     Timing timing;
+    std::vector<PassTiming> passes;
     CpuImage radiance;
 };
 
@@ -70,7 +72,22 @@ Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, con
                         {graph.importImage(filtered), graph.importImage(radiance)},
                         {.skipTiles = skipTiles});
     const Timing timing = timeGraph(graph, runs);
-    return {timing, radiance.download()};
+    std::vector<PassTiming> passes = timePasses(graph, runs);
+    return {timing, std::move(passes), radiance.download()};
+}
+
+// A row for every pass of the tiles; lists of them have no dense time.
+void addPassRows(BenchReport& report, const std::string& name, const Run& dense, const Run& tiles)
+{
+    for (const PassTiming& pass : tiles.passes) {
+        Json row = {{"name", name + ": " + pass.pass}, {"tiles_ms", pass.milliseconds}};
+        for (const PassTiming& same : dense.passes)
+            if (same.pass == pass.pass) {
+                row["dense_ms"] = same.milliseconds;
+                row["over_dense"] = pass.milliseconds / same.milliseconds;
+            }
+        report.add(row);
+    }
 }
 
 int run(const Options& o)
@@ -98,6 +115,8 @@ int run(const Options& o)
                     {"tiles_ms", tiles.timing.median},
                     {"over_dense", tiles.timing.median / dense.timing.median},
                     {"runs", runs}});
+        if (o.byPass)
+            addPassRows(report, name, dense, tiles);
     }
     report.finish();
     return 0;
@@ -112,6 +131,7 @@ Command addBenchHairFilter(CLI::App& bench)
     const auto o = std::make_shared<Options>();
     addBenchOptions(*app, o->bench);
     app->add_option("--size", o->size, "Of the picture")->type_name("WxH")->capture_default_str();
+    app->add_flag("--passes", o->byPass, "Also a row for each pass");
     addExamples(*app, "  strandlight bench hair-filter --size 1280x720 --json filter.json");
     return {app, [o] { return run(*o); }};
 }

@@ -114,6 +114,23 @@ Timing timeGraph(RenderGraph& graph, std::uint32_t runs)
     return timingOf(std::move(milliseconds));
 }
 
+std::vector<PassTiming> timePasses(RenderGraph& graph, std::uint32_t runs)
+{
+    std::vector<PassTiming> passes;
+    std::vector<std::vector<double>> milliseconds;
+    for (std::uint32_t i = 0; i < runs; ++i) {
+        throwIfInterrupted();
+        graph.execute();
+        passes = graph.timings();
+        milliseconds.resize(passes.size());
+        for (std::size_t p = 0; p < passes.size(); ++p)
+            milliseconds[p].push_back(passes[p].milliseconds);
+    }
+    for (std::size_t p = 0; p < passes.size(); ++p)
+        passes[p].milliseconds = timingOf(milliseconds[p]).median;
+    return passes;
+}
+
 std::string rowsText(const Json& rows)
 {
     std::vector<std::string> lines(rows.size() + 1);

@@ -4,7 +4,7 @@
 // A strip is NX neighbouring columns of one row of the grid; the grid is the result for a convolution, and the result
 // divided by the stride for a transposed one. One invocation computes K channels of one strip. Strips are numbered
 // through rows and images, so that lanes are full whatever the width; under kConvTiles they are numbered through the
-// active tiles instead, one workgroup each.
+// active tiles instead.
 #ifndef STRANDLIGHT_NN_CONV_ROWS_GLSL
 #define STRANDLIGHT_NN_CONV_ROWS_GLSL
 
@@ -45,12 +45,13 @@ Strip stripOfInvocation(uint scaleH, uint scaleW)
 {
     Strip strip;
     if ((FLAGS & kConvTiles) != 0) {
-        uint tile = imageLoad(tiles, int(gl_WorkGroupID.x)).x;
-        uint perRow = kConvTileWidth / (scaleW * NX);
-        uint row = gl_LocalInvocationID.x / perRow;
+        uint perRow = kTileSide / (scaleW * NX); // these are powers of two
+        uint perTile = perRow * (kTileSide / scaleH);
+        uint tile = imageLoad(tiles, int(gl_GlobalInvocationID.x / perTile)).x;
+        uint inTile = gl_GlobalInvocationID.x % perTile;
         strip.image = 0;
-        strip.row = (tile >> 16) * (kConvTileHeight / scaleH) + row;
-        strip.column = (tile & 0xffffu) * (kConvTileWidth / scaleW) + (gl_LocalInvocationID.x - row * perRow) * NX;
+        strip.row = (tile >> 16) * (kTileSide / scaleH) + inTile / perRow;
+        strip.column = (tile & 0xffffu) * (kTileSide / scaleW) + inTile % perRow * NX;
         strip.live = true;
         return strip;
     }

@@ -29,10 +29,10 @@ bool needed(uint tile)
     int y = int(divide(tile, push.tilesAcross));
     int x = int(tile) - y * int(push.tilesAcross);
     // The output pixels that this tile matters to.
-    int left = (x * int(kConvTileWidth) << push.level) - int(push.before);
-    int right = ((x + 1) * int(kConvTileWidth) << push.level) + int(push.after);
-    int top = int(push.tensorRow) + (y * int(kConvTileHeight) << push.level) - int(push.before);
-    int bottom = int(push.tensorRow) + ((y + 1) * int(kConvTileHeight) << push.level) + int(push.after);
+    int left = (x * int(kTileSide) << push.level) - int(push.before);
+    int right = ((x + 1) * int(kTileSide) << push.level) + int(push.after);
+    int top = int(push.tensorRow) + (y * int(kTileSide) << push.level) - int(push.before);
+    int bottom = int(push.tensorRow) + ((y + 1) * int(kTileSide) << push.level) + int(push.after);
     left = max(left, 0);
     right = min(right, 8 * int(push.blocksAcross));
     top = max(top, int(push.firstRow));
@@ -64,11 +64,14 @@ void main()
     for (uint before = 0u; before < lane; ++before)
         at += counts[before];
     if (lane == 255u) {
-        for (uint b = 0u; b < kConvTileBlocks; ++b) {
-            arguments[3u * b] = at + count;
-            arguments[3u * b + 1u] = b + 1u;
-            arguments[3u * b + 2u] = 1u;
+        for (uint i = 0u; i < kTileShares * kTileBlocks; ++i) {
+            uint share = i / kTileBlocks;
+            arguments[3u * i] = (at + count + (1u << share) - 1u) >> share;
+            arguments[3u * i + 1u] = i % kTileBlocks + 1u;
+            arguments[3u * i + 2u] = 1u;
         }
+        for (uint i = at + count; (i & ((1u << (kTileShares - 1u)) - 1u)) != 0u; ++i)
+            tiles[i] = ~0u; // outside of every picture
     }
     for (uint tile = first; tile < end && count > 0u; ++tile) {
         if (needed(tile)) {

@@ -1,4 +1,4 @@
-// Pixels of a TileList (compute_nn/tile_list.hpp) for workgroups of 8x8: record (tiles, kConvTileWidth / 8, 1).
+// Pixels of a TileList (compute_nn/tile_list.hpp) for workgroups of 8x8, a tile each.
 #ifndef STRANDLIGHT_NN_TILES_GLSL
 #define STRANDLIGHT_NN_TILES_GLSL
 
@@ -6,8 +6,7 @@
 
 ivec2 tilePixel(uint tile)
 {
-    return ivec2((tile & 0xffffu) * kConvTileWidth + 8u * gl_WorkGroupID.y + gl_LocalInvocationID.x,
-                 (tile >> 16) * kConvTileHeight + gl_LocalInvocationID.y);
+    return ivec2(tile & 0xffffu, tile >> 16) * int(kTileSide) + ivec2(gl_LocalInvocationID.xy);
 }
 
 #endif

@@ -26,11 +26,12 @@ STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; ne
 
 STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
 
-// Tiles of a TileList, in pixels of the layer's output: a multiple of every register tile of the row kernels.
-STRANDLIGHT_CONST(uint) kConvTileWidth = 40u;
-STRANDLIGHT_CONST(uint) kConvTileHeight = 8u;
-// Indirect arguments (tiles, b, 1) of a TileList for b = 1, 2, ... blocks of output channels.
-STRANDLIGHT_CONST(uint) kConvTileBlocks = 16u;
+// Side of a TileList's square tiles, in pixels of the layer's output: a multiple of the register tiles of the row kernels.
+STRANDLIGHT_CONST(uint) kTileSide = 8u;
+// Indirect arguments of a TileList, (workgroups, b, 1): 2^s tiles a workgroup, s below kTileShares, and b = 1, 2, ...
+// blocks of output channels.
+STRANDLIGHT_CONST(uint) kTileShares = 5u;
+STRANDLIGHT_CONST(uint) kTileBlocks = 16u;
 
 // Where a planar tensor, or a range of its channels, lies in a buffer of floats.
 struct TensorView

@@ -33,9 +33,11 @@ TileList upload(RenderGraph& graph, const TensorDesc& y, const std::vector<std::
     for (std::uint32_t i = 0; i < mask.size(); ++i)
         if (mask[i])
             tiles.push_back(i % width | i / width << 16);
-    for (std::uint32_t b = 1; b <= gpu::kConvTileBlocks; ++b)
-        arguments.insert(arguments.end(), {std::uint32_t(tiles.size()), b, 1});
-    tiles.resize(mask.size());
+    for (std::uint32_t share = 1; share <= kTilePadding; share *= 2)
+        for (std::uint32_t b = 1; b <= gpu::kTileBlocks; ++b)
+            arguments.insert(arguments.end(),
+                             {std::uint32_t(tiles.size() + share - 1) / share, b, 1});
+    tiles.resize(mask.size() + kTilePadding, ~0u);
     return {graph.uploadBuffer("tiles", std::span<const std::uint32_t>(tiles)),
             graph.uploadBuffer("arguments", std::span<const std::uint32_t>(arguments))};
 }
@@ -76,8 +78,8 @@ void checkTiles(Forward forward, const Desc& desc, const TensorDesc& x)
         const std::vector<float> got = run(forward, desc, x, &mask);
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < got.size(); ++i) {
-            const std::size_t row = i / y.w % y.h / gpu::kConvTileHeight;
-            const std::size_t tile = row * tileGrid(y).w + i % y.w / gpu::kConvTileWidth;
+            const std::size_t row = i / y.w % y.h / gpu::kTileSide;
+            const std::size_t tile = row * tileGrid(y).w + i % y.w / gpu::kTileSide;
             wrong += got[i] != (mask[tile] ? whole[i] : kUntouched);
         }
         CHECK_EQ(wrong, 0);

@@ -62,7 +62,7 @@ Needs followTaps(const UNetDesc& net, int p)
 // beyond what is needed: a bound for odd starts serves even ones, at four levels 15 pixels.
 void checkReach(const TileReach& reach, const Pixels& needed, int p)
 {
-    const int side = int(gpu::kConvTileHeight), scale = 1 << reach.level;
+    const int side = int(gpu::kTileSide), scale = 1 << reach.level;
     const int low = (p - 512) / scale / side, high = (p + 512) / scale / side;
     for (int tile = low; tile < high; ++tile) {
         const int first = tile * side, end = first + side;
