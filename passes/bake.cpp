@@ -12,7 +12,6 @@
 #include "passes/light_field_baselines.hpp"
 #include "passes/lightfield_capture.hpp"
 #include "passes/sg_fit.hpp"
-#include "passes/sg_prune.hpp"
 
 namespace strandlight {
 
@@ -63,7 +62,7 @@ private:
 };
 
 Lightfield capture(Context& context, const Scene& scene, GpuScene& device, const Atlas& atlas,
-                   const BakeSettings& settings, Saver& saver)
+                   const BakeSettings& settings, Saver& saver, BakeStatistics& numbers)
 {
     CaptureSettings wanted;
     wanted.size = settings.lightfieldSize;
@@ -95,6 +94,7 @@ Lightfield capture(Context& context, const Scene& scene, GpuScene& device, const
         saver.state.capture = work.save();
         saver.save();
     }
+    numbers.captureDispatches = work.statistics().dispatches;
     return work.finish();
 }
 
@@ -113,16 +113,6 @@ SgField fit(Context& context, const FitProblem& problem, const FitSettings& sett
     return fitLobes(context, problem, settings, nullptr, &checkpoint);
 }
 
-void countLobes(const FitProblem& problem, const SgField& field, BakeStatistics& numbers)
-{
-    FitStatistics counts;
-    countDropped(problem, field, counts);
-    numbers.lobes += field.lobes.size();
-    numbers.keptLobes += field.keptCount();
-    numbers.tiles += counts.tiles;
-    numbers.darkTiles += counts.darkTiles;
-}
-
 double rmseAtTexels(const FitProblem& problem, const SgField& field)
 {
     const FitReport report =
@@ -130,30 +120,27 @@ double rmseAtTexels(const FitProblem& problem, const SgField& field)
     return report.rows.empty() ? 0.0 : report.rows[0].texelRmse;
 }
 
-} // namespace
-
-SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& settings,
-                 BakeStatistics* statistics)
+SgField darkField(const Atlas& atlas, std::uint32_t lobes, std::uint32_t tileSize)
 {
-    BakeStatistics numbers;
-    if (scene.triangles.empty())
-        throw Error("the scene has no triangles: there is nothing to bake");
+    SgField field;
+    field.lobeCount = lobes;
+    field.lobes.resize(atlas.texels.size() * lobes);
+    field.tileSize = tileSize;
+    field.kept.assign(atlas.texels.size(), 0u);
+    return field;
+}
 
-    // Atlas
-    Clock::time_point start = Clock::now();
-    SgBake bake;
-    bake.atlas = buildAtlas(scene, {.resolution = settings.atlasResolution});
-    numbers.atlasSeconds = secondsSince(start);
-    numbers.texels = std::uint32_t(bake.atlas.texels.size());
-    numbers.emptyTexels = settings.atlasResolution * settings.atlasResolution - numbers.texels;
-
-    // Capture
+// Images of all texels, then lobes for them.
+void captureAndFit(Context& context, const Scene& scene, const BakeSettings& settings, SgBake& bake,
+                   BakeStatistics& numbers)
+{
     Saver saver(settings, hashBake(scene, settings));
-    start = Clock::now();
+    Clock::time_point start = Clock::now();
     GpuScene device = uploadScene(context, scene);
     CpuLightfield images;
     {
-        const Lightfield field = capture(context, scene, device, bake.atlas, settings, saver);
+        const Lightfield field =
+            capture(context, scene, device, bake.atlas, settings, saver, numbers);
         images = downloadLightfield(
             field); // the device's copy goes: the fit lays the images out for itself
     }
@@ -170,7 +157,6 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
                             ? *saver.state.radiance
                             : fit(context, problem, wanted, saver.state.radianceFit, saver);
         numbers.radianceRmse = rmseAtTexels(problem, bake.radiance);
-        countLobes(problem, bake.radiance, numbers);
     }
     // Lobes of the distant environment, as far as it is seen
     if (!images.environment.empty()) {
@@ -182,9 +168,38 @@ SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& setti
             buildFitProblem(bake.atlas, images, LightSet::Environment, wanted);
         bake.environment = fit(context, problem, wanted, saver.state.environmentFit, saver);
         numbers.environmentRmse = rmseAtTexels(problem, *bake.environment);
-        countLobes(problem, *bake.environment, numbers);
     }
     numbers.fitSeconds = secondsSince(start);
+}
+
+} // namespace
+
+SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& settings,
+                 BakeStatistics* statistics)
+{
+    BakeStatistics numbers;
+    const Clock::time_point start = Clock::now();
+    SgBake bake;
+    bake.atlas.resolution = settings.atlasResolution;
+    if (!scene.triangles.empty())
+        bake.atlas = buildAtlas(scene, {.resolution = settings.atlasResolution});
+    numbers.atlasSeconds = secondsSince(start);
+    numbers.texels = std::uint32_t(bake.atlas.texels.size());
+    numbers.emptyTexels = settings.atlasResolution * settings.atlasResolution - numbers.texels;
+
+    if (!scene.environment)
+        numbers.skipped.push_back("environment lobes: the scene has no environment");
+    if (!bake.atlas.texels.empty() && sendsLight(scene)) {
+        captureAndFit(context, scene, settings, bake, numbers);
+    } else {
+        numbers.skipped.push_back(std::string("capture and fit: ") + (bake.atlas.texels.empty()
+                                                                          ? "there is no surface"
+                                                                          : "nothing sends light"));
+        bake.radiance = darkField(bake.atlas, settings.lobes, settings.lobeTile);
+        if (scene.environment)
+            bake.environment = darkField(bake.atlas, settings.environmentLobes, settings.lobeTile);
+    }
+    numbers.savings = bakeSavings(bake);
 
     BakeInfo& info = bake.info;
     info.scene = scene.name;

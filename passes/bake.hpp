@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/scene/scene.hpp"
 #include "engine/vk/context.hpp"
+#include "passes/savings.hpp"
 #include "passes/sg_field.hpp"
 #include "passes/sg_fit_settings.hpp"
 
@@ -42,15 +44,16 @@ struct BakeStatistics
     double atlasSeconds = 0.0;
     double captureSeconds = 0.0;
     double fitSeconds = 0.0;
-    std::uint64_t lobes = 0; // of both sets, if all were kept
-    std::uint64_t keptLobes = 0;
-    std::uint64_t tiles = 0;     // of both sets; 0 when nothing was to be dropped
-    std::uint64_t darkTiles = 0; // that keep no lobe
-    double radianceRmse = 0.0;   // light field against its lobes, at texels
+    std::uint32_t captureDispatches = 0;
+    BakeSavings savings;
+    std::vector<std::string> skipped; // what the scene did not need, and why
+    double radianceRmse = 0.0;        // light field against its lobes, at texels
     double environmentRmse = 0.0;
     std::uint64_t peakDeviceBytes = 0;
 };
 
+// A scene without triangles, or without any light, is baked without a look at the device: nothing
+// is captured or fitted, no texel keeps a lobe.
 // Throws Error on a scene that cannot be baked, Interrupted when the user stops it (the checkpoint
 // is then on disk).
 SgBake bakeScene(Context& context, const Scene& scene, const BakeSettings& settings,

@@ -61,6 +61,20 @@ CpuImage backgroundPicture(const HairRenderSettings& settings)
     return CpuImage(settings.width, settings.height, glm::vec4(settings.backgroundColor, 1.0f));
 }
 
+void countBlocks(HairFrame& frame)
+{
+    constexpr std::uint32_t kSide = 8;
+    const CpuImage& exact = frame.exactTransmittance;
+    const std::uint32_t across = (exact.width + kSide - 1) / kSide;
+    std::vector<std::uint8_t> touched(std::size_t(across) * ((exact.height + kSide - 1) / kSide));
+    for (std::uint32_t y = 0; y < exact.height; ++y)
+        for (std::uint32_t x = 0; x < exact.width; ++x)
+            if (exact.at(x, y).x < 1.0f)
+                touched[std::size_t(y / kSide) * across + x / kSide] = 1;
+    frame.blocks = std::uint32_t(touched.size());
+    frame.emptyBlocks = std::uint32_t(std::count(touched.begin(), touched.end(), 0));
+}
+
 // Hair over what is behind it. `behind` is premultiplied by the samples that showed it.
 void composite(HairFrame& frame, const CpuImage& behind, const HairRenderSettings& settings)
 {
@@ -250,6 +264,7 @@ HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opa
         maker.filterFrame();
     else
         maker.averageFrames();
+    countBlocks(frame);
     return frame;
 }
 

@@ -85,6 +85,8 @@ struct HairFrame
     std::uint32_t lod = 1;            // that was used
     std::uint32_t drawnStrands = 0;
     std::uint32_t drawnSegments = 0;
+    std::uint32_t blocks = 0;      // of 8x8 pixels; 0 where the exact transmittance is not known
+    std::uint32_t emptyBlocks = 0; // that no strand touches: the network leaves them out
 };
 
 // Where the samples of frame i lie, off the pixel's by up to a quarter pixel: with the four

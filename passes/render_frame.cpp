@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "engine/base/error.hpp"
+#include "engine/graph/plan.hpp"
+#include "engine/scene/environment.hpp"
 #include "passes/downsample.hpp"
 #include "passes/environment_prefilter.hpp"
 #include "passes/gbuffer.hpp"
@@ -135,12 +137,42 @@ ImageId addLight(RenderGraph& graph, const FramePlan& plan, const Scene& scene, 
     return lit;
 }
 
+// The sky, where there is nothing else to see.
+FrameResult renderSky(const Scene& scene, const Camera& camera, const RenderSettings& settings)
+{
+    FrameResult result;
+    result.radiance = CpuImage(settings.width, settings.height, glm::vec4(0, 0, 0, 1));
+    result.skipped.push_back("surfaces and their light: the scene has no triangles");
+    if (!scene.environment) {
+        result.skipped.push_back("environment: the scene has none");
+        return result;
+    }
+    if (settings.view != RenderView::Final) {
+        result.skipped.push_back("sky: not in this view");
+        return result;
+    }
+    const std::uint32_t factor = settings.supersample;
+    const gpu::CameraRays rays =
+        cameraRays(camera, settings.width * factor, settings.height * factor);
+    for (std::uint32_t y = 0; y < settings.height * factor; ++y)
+        for (std::uint32_t x = 0; x < settings.width * factor; ++x)
+            result.radiance.at(x / factor, y / factor) +=
+                glm::vec4(
+                    environmentRadiance(*scene.environment,
+                                        gpu::cameraRayDirection(rays, glm::vec2(x, y) + 0.5f)),
+                    0.0f) /
+                float(factor * factor);
+    return result;
+}
+
 } // namespace
 
 FrameResult renderFrame(Context& context, const Scene& scene, GpuScene& gpuScene,
                         const SgBake& bake, const Camera& camera, const RenderSettings& settings)
 {
     checkInputs(scene, bake, settings);
+    if (scene.triangles.empty())
+        return renderSky(scene, camera, settings);
     FrameResult result;
     SgTextures textures = uploadSgTextures(context, bake);
     const FramePlan plan = planFrame(scene, gpuScene, textures, settings.view, result.skipped);
@@ -159,6 +191,9 @@ FrameResult renderFrame(Context& context, const Scene& scene, GpuScene& gpuScene
     if (settings.supersample > 1)
         picture = addDownsamplePass(graph, picture, settings.supersample);
     graph.output(picture);
+    const GraphPlan& memory = graph.compile();
+    result.targetBytes = memory.transientBytes;
+    result.arenaBytes = memory.arenaBytes;
     graph.run();
 
     result.radiance = graph.read(picture);

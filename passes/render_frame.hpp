@@ -41,9 +41,12 @@ struct FrameResult
         skipped; // what the scene did not need, and why: "environment: the scene has none"
     std::vector<PassTiming> timings; // of those passes, GPU milliseconds
     std::uint64_t textureBytes = 0;  // of the baked lobes on the device
+    std::uint64_t targetBytes = 0;   // of pictures between passes, if each had its own memory
+    std::uint64_t arenaBytes = 0;    // that they take, sharing it
 };
 
-// The scene on the device must be this scene. Throws Error when the bake belongs to another
+// The scene on the device must be this scene; of a scene without triangles it may be empty: its
+// picture is the sky, made without the device. Throws Error when the bake belongs to another
 // geometry (triangle counts differ), the size is empty or over 16384, or the scene has an
 // environment and the bake has none.
 FrameResult renderFrame(Context& context, const Scene& scene, GpuScene& gpuScene,

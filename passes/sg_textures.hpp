@@ -35,7 +35,10 @@ struct SgTextures
     Buffer corners; // vec4 [triangles, 4]: (tangent, u) of three corners, then (v, v, v, 0)
 };
 
-// One lobe in 16 bytes. Halves: amplitudes beyond 65504 are clamped, ln(lambda) keeps lambda to 0.4
+inline constexpr std::uint64_t kDeviceLobeBytes = 16;
+
+// One lobe in kDeviceLobeBytes. Halves: amplitudes beyond 65504 are clamped, ln(lambda) keeps
+// lambda to 0.4
 // %.
 glm::uvec4 packSgLobe(const SgLobe& lobe);
 

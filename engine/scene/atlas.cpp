@@ -71,11 +71,14 @@ Atlas buildAtlas(const Scene& scene, const AtlasSettings& settings)
     }
 
     const std::size_t texelCount = std::size_t(settings.resolution) * settings.resolution;
-    const std::vector<Chart> charts = clusterSmallCharts(
-        mesh, buildCharts(mesh), std::max<std::size_t>(1, texelCount / kTexelsPerChart));
+    const std::vector<Chart> built = buildCharts(mesh);
+    const std::vector<Chart> charts =
+        clusterSmallCharts(mesh, built, std::max<std::size_t>(1, texelCount / kTexelsPerChart));
     AtlasLayout layout = packCharts(mesh, charts, settings);
     TexelList list = listTexels(mesh, layout, settings.resolution);
-    return assembleAtlas(std::move(layout), std::move(list), settings.resolution);
+    Atlas atlas = assembleAtlas(std::move(layout), std::move(list), settings.resolution);
+    atlas.sharingCharts = static_cast<std::uint32_t>(built.size() - charts.size());
+    return atlas;
 }
 
 AtlasPoint evaluateAtlasTexel(const Scene& scene, const Atlas& atlas, const AtlasTexel& texel)

@@ -41,6 +41,9 @@ struct Atlas
 {
     std::uint32_t resolution = 0;
     std::uint32_t chartCount = 0;
+    // Charts without a texel of their own: they share one with others near them that face the same
+    // way. Known to buildAtlas() alone, not kept in files.
+    std::uint32_t sharingCharts = 0;
     bool usedTexCoord1 = false;
     float texelsPerMetre = 0.0f;
     std::vector<AtlasCorner> corners; // [triangles * 3]

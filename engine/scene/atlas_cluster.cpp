@@ -37,12 +37,16 @@ int facingOf(glm::vec3 d)
     return axis * 2 + (d[axis] < 0.0f ? 1 : 0);
 }
 
+float areaOf(const Chart& chart)
+{
+    return chart.size.x * chart.size.y;
+}
+
 Chart unite(const AtlasMesh& mesh, const std::vector<const Chart*>& parts)
 {
     const auto largest =
-        *std::max_element(parts.begin(), parts.end(), [](const Chart* a, const Chart* b) {
-            return a->size.x * a->size.y < b->size.x * b->size.y;
-        });
+        *std::max_element(parts.begin(), parts.end(),
+                          [](const Chart* a, const Chart* b) { return areaOf(*a) < areaOf(*b); });
     std::vector<std::uint32_t> triangles;
     for (const Chart* part : parts)
         triangles.insert(triangles.end(), part->triangles.begin(), part->triangles.end());
@@ -51,22 +55,44 @@ Chart unite(const AtlasMesh& mesh, const std::vector<const Chart*>& parts)
     return chart;
 }
 
-std::vector<Chart> clusterAt(const AtlasMesh& mesh, const std::vector<Chart>& charts,
-                             glm::vec3 origin, float cell)
+struct Grouping
 {
+    std::vector<const Chart*> alone; // too large to be united
     std::map<Key, std::vector<const Chart*>> groups;
-    std::vector<Chart> result;
+
+    std::size_t count() const { return alone.size() + groups.size(); }
+};
+
+// Charts no longer than a cell and no larger than `area`, by cell and direction.
+Grouping groupCharts(const AtlasMesh& mesh, const std::vector<Chart>& charts, glm::vec3 origin,
+                     float cell, float area)
+{
+    Grouping grouping;
     for (const Chart& chart : charts) {
-        if (chart.size.x > cell) {
-            result.push_back(chart);
+        if (chart.size.x > cell || areaOf(chart) > area) {
+            grouping.alone.push_back(&chart);
             continue;
         }
         const glm::vec3 relative = (mesh.position(chart.triangles.front(), 0) - origin) / cell;
-        groups[{glm::ivec3(glm::floor(relative)), facingOf(directionOf(chart))}].push_back(&chart);
+        grouping.groups[{glm::ivec3(glm::floor(relative)), facingOf(directionOf(chart))}].push_back(
+            &chart);
     }
-    for (const auto& [key, parts] : groups)
-        result.push_back(parts.size() == 1 ? *parts.front() : unite(mesh, parts));
-    return result;
+    return grouping;
+}
+
+// The smallest area up to which charts must be united in these cells, that no more than `limit` are
+// left; the largest one there is when all must be.
+float smallestAreaToUnite(const AtlasMesh& mesh, const std::vector<Chart>& charts, glm::vec3 origin,
+                          float cell, std::size_t limit)
+{
+    std::vector<float> areas;
+    for (const Chart& chart : charts)
+        areas.push_back(areaOf(chart));
+    std::sort(areas.begin(), areas.end());
+    const auto first = std::partition_point(areas.begin(), std::prev(areas.end()), [&](float area) {
+        return groupCharts(mesh, charts, origin, cell, area).count() > limit;
+    });
+    return *first;
 }
 
 } // namespace
@@ -74,12 +100,22 @@ std::vector<Chart> clusterAt(const AtlasMesh& mesh, const std::vector<Chart>& ch
 std::vector<Chart> clusterSmallCharts(const AtlasMesh& mesh, std::vector<Chart> charts,
                                       std::size_t limit)
 {
+    if (charts.size() <= limit)
+        return charts;
     const glm::vec3 origin = mesh.scene().boundsMin();
     const glm::vec3 extent = mesh.scene().boundsMax() - origin;
     float cell = std::max({extent.x, extent.y, extent.z}) * kFinestCell;
-    std::vector<Chart> result = charts;
-    for (int level = 0; level < kLevels && result.size() > limit; ++level, cell *= 2.0f)
-        result = clusterAt(mesh, charts, origin, cell);
+    for (int level = 1; level < kLevels; ++level, cell *= 2.0f)
+        if (groupCharts(mesh, charts, origin, cell, HUGE_VALF).count() <= limit)
+            break;
+    // In cells as large as needed the smallest are enough: a wall is no longer than a cell, either.
+    const float area = smallestAreaToUnite(mesh, charts, origin, cell, limit);
+    const Grouping grouping = groupCharts(mesh, charts, origin, cell, area);
+    std::vector<Chart> result;
+    for (const Chart* chart : grouping.alone)
+        result.push_back(*chart);
+    for (const auto& [key, parts] : grouping.groups)
+        result.push_back(parts.size() == 1 ? *parts.front() : unite(mesh, parts));
     return result;
 }
 

@@ -8,9 +8,10 @@
 
 namespace strandlight {
 
-// Unites small charts that lie near each other and face the same of six directions, in ever larger
-// cells, until at most `limit` charts remain or nothing is left to unite. A united chart is
-// `pinned`: it takes one texel.
+// Unites small charts that lie near each other and face the same of six directions until at most
+// `limit` charts remain or nothing is left to unite: in the smallest cells in which that can be
+// reached, and there the smallest charts first, so that large ones keep their texels. A united
+// chart is `pinned`: it takes one texel.
 std::vector<Chart> clusterSmallCharts(const AtlasMesh& mesh, std::vector<Chart> charts,
                                       std::size_t limit);
 

@@ -166,7 +166,7 @@ Scene parseGltf(std::span<const std::uint8_t> bytes, const std::filesystem::path
     NodeWalker walker(document, scene);
     for (const int root : rootNodes(document))
         walker.visit(root, glm::dmat4(1.0), 0, "scene");
-    if (scene.triangles.empty())
+    if (scene.triangles.empty() && !document.model.meshes.empty()) // without meshes: as intended
         document.fail("", "the scene has no triangles");
     scene.hasTexCoord1 = walker.progress.allHaveTexCoord1;
     dropUnusedDefaultMaterial(scene);

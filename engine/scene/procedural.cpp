@@ -181,4 +181,12 @@ Scene buildDarkBoxScene()
     return scene;
 }
 
+Scene buildEmptyScene()
+{
+    Scene scene;
+    scene.name = "builtin:empty";
+    scene.cameras.push_back(Camera{});
+    return scene;
+}
+
 } // namespace strandlight

@@ -16,4 +16,7 @@ Scene buildFurnaceScene(float albedo);
 // A grey box on a floor and no light at all: what a renderer should skip shows here.
 Scene buildDarkBoxScene();
 
+// Nothing but a camera: the picture is the environment, if one is added.
+Scene buildEmptyScene();
+
 } // namespace strandlight

@@ -39,13 +39,15 @@ Scene loadScene(const std::string& pathOrBuiltin)
         return buildRoomScene();
     if (name == "bust")
         return buildBustScene();
+    if (name == "empty")
+        return buildEmptyScene();
     if (name == "box")
         return buildDarkBoxScene();
     if (name == kFurnace || name.starts_with("furnace:"))
         return buildFurnace(name.substr(kFurnace.size()));
     throw Error("'" + pathOrBuiltin +
                 "' is not a built-in scene: there are builtin:room, builtin:bust, "
-                "builtin:furnace[:albedo] and builtin:box");
+                "builtin:furnace[:albedo], builtin:box and builtin:empty");
 }
 
 } // namespace strandlight

@@ -10,6 +10,7 @@
 #include "passes/sgl_file.hpp"
 #include "samples/strandlight/commands.hpp"
 #include "samples/strandlight/outputs.hpp"
+#include "samples/strandlight/savings_text.hpp"
 
 namespace strandlight::cli {
 
@@ -59,6 +60,16 @@ void addSettings(CLI::App& app, Options& o)
     app.add_flag("--resume", s.resume, "Go on from the checkpoint of an interrupted bake");
 }
 
+SglStorage storageOf(const Options& o)
+{
+    return o.storage == "packed" ? SglStorage::Packed : SglStorage::Fp16;
+}
+
+std::uint64_t bytesPerLobe(const Options& o)
+{
+    return sglBytesPerLobe(storageOf(o));
+}
+
 // The checkpoint lives beside the result and is gone when that is written.
 std::filesystem::path checkpointOf(const std::string& output)
 {
@@ -87,10 +98,14 @@ Json describe(const Options& o, const Context& context, const SgBake& bake,
     json["result"] = {{"file", o.output},
                       {"file_bytes", saved.fileBytes},
                       {"charts", bake.atlas.chartCount},
+                      {"sharing_charts", bake.atlas.sharingCharts},
                       {"texels", statistics.texels},
                       {"skipped_texels", statistics.skippedTexels},
                       {"empty_texels", statistics.emptyTexels},
                       {"bytes_per_texel", saved.lobeBytesPerTexel},
+                      {"savings", describeSavings(statistics.savings, bytesPerLobe(o))},
+                      {"skipped", statistics.skipped},
+                      {"capture_dispatches", statistics.captureDispatches},
                       {"radiance_rmse", statistics.radianceRmse},
                       {"environment_rmse", statistics.environmentRmse},
                       {"peak_device_bytes", statistics.peakDeviceBytes},
@@ -105,6 +120,9 @@ void print(const Options& o, const Context& context, const SgBake& bake,
            const BakeStatistics& statistics, const SglSaveReport& saved, double seconds)
 {
     std::printf("device    %s\n", context.device().name.c_str());
+    if (bake.atlas.sharingCharts > 0)
+        std::printf("charts    %u more share texels with others: the atlas is too small for them\n",
+                    bake.atlas.sharingCharts);
     std::printf("atlas     %ux%u, %u charts, %u texels with surface, %u of them inside geometry\n",
                 bake.atlas.resolution, bake.atlas.resolution, bake.atlas.chartCount,
                 statistics.texels, statistics.skippedTexels);
@@ -113,6 +131,9 @@ void print(const Options& o, const Context& context, const SgBake& bake,
     if (bake.environment)
         std::printf("window    %u lobes per texel for the environment, RMSE %.4g\n",
                     bake.environment->lobeCount, statistics.environmentRmse);
+    for (const std::string& part : statistics.skipped)
+        std::printf("skipped   %s\n", part.c_str());
+    printSavings(statistics.savings, bytesPerLobe(o));
     std::printf("seconds   %.1f: atlas %.1f, capture %.1f, fit %.1f\n", seconds,
                 statistics.atlasSeconds, statistics.captureSeconds, statistics.fitSeconds);
     std::printf("wrote     %s, %s\n", o.output.c_str(), bytesText(saved.fileBytes).c_str());
@@ -134,8 +155,7 @@ int run(Options& o)
 
     BakeStatistics statistics;
     const SgBake bake = bakeScene(context, scene, o.settings, &statistics);
-    const SglSaveReport saved =
-        saveSgl(o.output, bake, o.storage == "packed" ? SglStorage::Packed : SglStorage::Fp16);
+    const SglSaveReport saved = saveSgl(o.output, bake, storageOf(o));
     std::filesystem::remove(o.settings.checkpoint);
 
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

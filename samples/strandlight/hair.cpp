@@ -148,13 +148,15 @@ Json describe(const std::string& command, const Options& o, const Context& conte
                       {"drawn_segments", frame.drawnSegments},
                       {"passes", passes},
                       {"skipped", frame.skipped},
+                      {"blocks", frame.blocks},
+                      {"empty_blocks", frame.emptyBlocks},
                       {"milliseconds", totalMilliseconds(frame)},
                       {"peak_device_bytes", context.peakBytesAllocated()},
                       {"seconds", seconds}};
     return json;
 }
 
-void printStats(const Context& context, const HairFrame& frame)
+void printStats(const Context& context, const HairStrands& hair, const HairFrame& frame)
 {
     std::printf("device    %s\n", context.device().name.c_str());
     std::printf("hair      %u strands, %u segments drawn, level of detail %u\n", frame.drawnStrands,
@@ -165,6 +167,11 @@ void printStats(const Context& context, const HairFrame& frame)
         std::printf("culled    %s\n", pass.c_str());
     std::printf("together  %.3f ms, device memory %s\n", totalMilliseconds(frame),
                 bytesText(context.peakBytesAllocated()).c_str());
+    std::printf(
+        "skipped   %zu passes, %u of %u strands (level of detail), %u of %u blocks of 8x8 "
+        "pixels (no hair)\n",
+        frame.skipped.size(), hair.strandCount() - frame.drawnStrands, hair.strandCount(),
+        frame.emptyBlocks, frame.blocks);
 }
 
 int run(const std::string& command, Options& o)
@@ -201,7 +208,7 @@ int run(const std::string& command, Options& o)
 
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     if (o.stats)
-        printStats(context, frame);
+        printStats(context, hair, frame);
     for (const std::string& output : o.view.outputs)
         std::printf("wrote     %s, %.1f s\n", output.c_str(), elapsed.count());
     writeJson(o.json, describe(command, o, context, camera, hair, frame, elapsed.count()));

@@ -127,7 +127,8 @@ Json showScene(const Options& o)
     if (scene.environment)
         std::printf("sky        %ux%u\n", scene.environment->latLong.width,
                     scene.environment->latLong.height);
-    showAtlas(scene, o.atlas, json);
+    if (!scene.triangles.empty())
+        showAtlas(scene, o.atlas, json);
     std::printf("textures   %zu\n", scene.textures.size());
     for (std::size_t i = 0; i < scene.textures.size(); ++i)
         std::printf("  %zu  %s, %ux%u\n", i, scene.textures[i].name.c_str(),

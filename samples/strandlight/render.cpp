@@ -11,6 +11,7 @@
 #include "samples/strandlight/commands.hpp"
 #include "samples/strandlight/open_bake.hpp"
 #include "samples/strandlight/outputs.hpp"
+#include "samples/strandlight/savings_text.hpp"
 
 namespace strandlight::cli {
 
@@ -50,8 +51,8 @@ double totalMilliseconds(const FrameResult& frame)
     return total;
 }
 
-Json describe(const Options& o, const Context& context, const Camera& camera,
-              const FrameResult& frame, double seconds)
+Json describe(const Options& o, const Context& context, const Camera& camera, const SgBake& bake,
+              const FrameResult& frame, double allLobesMilliseconds, double seconds)
 {
     Json json = describeRun("render", &context);
     json["settings"] = {{"scene", o.scene.scene},
@@ -74,12 +75,17 @@ Json describe(const Options& o, const Context& context, const Camera& camera,
                       {"milliseconds", totalMilliseconds(frame)},
                       {"frames", o.stats ? 2 : 1}, // times are of the last
                       {"lobe_bytes", frame.textureBytes},
+                      {"target_bytes", frame.targetBytes},
+                      {"arena_bytes", frame.arenaBytes},
+                      {"savings", describeSavings(bakeSavings(bake), kDeviceLobeBytes)},
+                      {"milliseconds_with_all_lobes", allLobesMilliseconds},
                       {"peak_device_bytes", context.peakBytesAllocated()},
                       {"seconds", seconds}};
     return json;
 }
 
-void printStats(const Context& context, const FrameResult& frame)
+void printStats(const Context& context, const SgBake& bake, const FrameResult& frame,
+                double allLobesMilliseconds)
 {
     std::printf("device    %s\n", context.device().name.c_str());
     for (const PassTiming& timing : frame.timings)
@@ -89,6 +95,12 @@ void printStats(const Context& context, const FrameResult& frame)
     std::printf("together  %zu passes, %.3f ms; lobes %s, device memory %s\n", frame.passes.size(),
                 totalMilliseconds(frame), bytesText(frame.textureBytes).c_str(),
                 bytesText(context.peakBytesAllocated()).c_str());
+    std::printf("skipped   %zu kinds of light or of passes\n", frame.skipped.size());
+    printSavings(bakeSavings(bake), kDeviceLobeBytes);
+    std::printf("saved     %s of %s between passes by sharing memory, %.3f ms of lobes\n",
+                bytesText(frame.targetBytes - frame.arenaBytes).c_str(),
+                bytesText(frame.targetBytes).c_str(),
+                allLobesMilliseconds - totalMilliseconds(frame));
 }
 
 int run(Options& o)
@@ -108,23 +120,28 @@ int run(Options& o)
     const Camera camera = chooseCamera(scene, o.view.camera);
     Context context = openDevice(o.device);
 
-    GpuScene gpuScene = uploadScene(context, scene);
-    const auto draw = [&] {
-        return renderFrame(context, scene, gpuScene, bake, camera, o.settings);
+    GpuScene gpuScene = scene.triangles.empty() ? GpuScene() : uploadScene(context, scene);
+    const auto draw = [&](const SgBake& lit) {
+        return renderFrame(context, scene, gpuScene, lit, camera, o.settings);
     };
-    FrameResult frame = draw();
-    if (o.stats)
-        frame = draw(); // drivers compile at first use: the second frame's times are a frame's
+    FrameResult frame = draw(bake);
+    double allLobesMilliseconds = 0.0;
+    if (o.stats) {
+        frame = draw(bake); // drivers compile at first use: the second frame's times are a frame's
+        allLobesMilliseconds =
+            totalMilliseconds(bakeSavings(bake).tiles > 0 ? draw(withAllLobes(bake)) : frame);
+    }
     throwIfInterrupted();
     for (const std::string& output : o.view.outputs)
         writePicture(output, frame.radiance, o.view.exposure);
 
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     if (o.stats)
-        printStats(context, frame);
+        printStats(context, bake, frame, allLobesMilliseconds);
     for (const std::string& output : o.view.outputs)
         std::printf("wrote     %s, %.1f s\n", output.c_str(), elapsed.count());
-    writeJson(o.json, describe(o, context, camera, frame, elapsed.count()));
+    writeJson(o.json,
+              describe(o, context, camera, bake, frame, allLobesMilliseconds, elapsed.count()));
     return 0;
 }
 
@@ -156,7 +173,8 @@ Command addRender(CLI::App& parent)
         ->capture_default_str()
         ->check(CLI::Range(1u, 8u));
     app->add_flag("--stats", o->stats,
-                  "Render twice; print passes, milliseconds of the second frame, what was culled");
+                  "Render twice; print passes, milliseconds of the second frame, what was culled, "
+                  "skipped and saved");
     addJsonOption(*app, o->json);
     addDeviceOptions(*app, o->device);
     addExamples(*app,

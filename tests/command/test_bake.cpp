@@ -139,6 +139,30 @@ TEST_CASE("a checkpoint of other settings is refused")
     CHECK(std::filesystem::exists(output + ".checkpoint")); // hours of work may be in it
 }
 
+TEST_CASE("an empty scene bakes to a valid file and renders, without touching the device")
+{
+    const TemporaryFolder folder;
+    const auto in = [&](const char* name) { return (folder.path() / name).string(); };
+    REQUIRE(
+        runCommand({"bake", "builtin:empty", "-o", in("e.sgl"), "--json", in("b.json")}).exitCode ==
+        0);
+    const nlohmann::json baked = readJson(in("b.json"))["result"];
+    CHECK(baked["texels"] == 0);
+    CHECK(baked["capture_dispatches"] == 0);
+    CHECK(baked["peak_device_bytes"] == 0);
+    CHECK(baked["savings"]["lobes"] == 0);
+    CHECK(runCommand({"info", in("e.sgl")}).exitCode == 0);
+    REQUIRE(runCommand({"render", "builtin:empty", "--bake", in("e.sgl"), "-o", in("e.png"),
+                        "--size", "32x24", "--stats", "--json", in("r.json")})
+                .exitCode == 0);
+    const nlohmann::json rendered = readJson(in("r.json"))["result"];
+    CHECK(rendered["passes"].empty());
+    CHECK(rendered["peak_device_bytes"] == 0);
+    CHECK(rendered["skipped"].size() == 2);
+    checkFails(runCommand({"render", "builtin:room", "--bake", in("e.sgl"), "-o", in("x.png")}),
+               "other geometry");
+}
+
 TEST_CASE("bake, info, render and reference, each with JSON")
 {
     const TemporaryFolder folder;

@@ -147,6 +147,34 @@ TEST_CASE("atlas: more charts than texels still work, sharing texels by place an
     CHECK(atlas.chartCount < 4096);
 }
 
+TEST_CASE("atlas: when charts must share texels, the smallest do")
+{
+    // 36 boxes in a room: 222 charts, of which 128 may stay.
+    Scene scene = makeCube();
+    for (Vertex& vertex : scene.vertices)
+        vertex.position *= 4.0f;
+    const Scene box = makeCube();
+    for (int i = 0; i < 36; ++i)
+        for (const glm::uvec3 t : box.triangles) {
+            const auto corner = [&](std::uint32_t v) {
+                return 0.1f * box.vertices[v].position +
+                       glm::vec3(float(i % 6) - 2.5f, -2.0f, float(i / 6) - 2.5f);
+            };
+            addTriangle(scene, corner(t.x), corner(t.y), corner(t.z));
+        }
+    const Atlas atlas = buildAtlas(scene, {.resolution = 64, .gutter = 2});
+    checkTexels(scene, atlas);
+    checkLookups(scene, atlas, 10);
+    CHECK(atlas.chartCount <= 128);
+    CHECK(atlas.chartCount > 100);
+    CHECK(atlas.chartCount + atlas.sharingCharts == 222);
+    for (std::uint32_t t = 0; t < 12; ++t) { // the walls keep their texels
+        const double expected = areaOf(scene, t) * atlas.texelsPerMetre * atlas.texelsPerMetre;
+        CHECK(expected > 20.0);
+        CHECK(uvAreaOf(atlas, t) == doctest::Approx(expected).epsilon(0.2));
+    }
+}
+
 TEST_CASE("atlas: triangles without area are carried along")
 {
     Scene scene = makeCube();

@@ -1,0 +1,42 @@
+#include "samples/strandlight/savings_text.hpp"
+
+#include <cinttypes>
+#include <cstdio>
+
+namespace strandlight::cli {
+
+namespace {
+
+// Of lobes that are not stored: those of places without surface, and those that were dropped.
+std::uint64_t savedBytes(const BakeSavings& s, std::uint64_t lobeBytes)
+{
+    if (s.texels == 0)
+        return 0;
+    return (s.lobes / s.texels * (s.places - s.texels) + s.lobes - s.keptLobes) * lobeBytes;
+}
+
+} // namespace
+
+void printSavings(const BakeSavings& s, std::uint64_t lobeBytes)
+{
+    std::printf("skipped   %" PRIu64 " of %" PRIu64 " texels (no surface), %" PRIu64 " of %" PRIu64
+                " lobes (dropped), %" PRIu64 " of %" PRIu64 " tiles (dark)\n",
+                s.places - s.texels, s.places, s.lobes - s.keptLobes, s.lobes, s.darkTiles,
+                s.tiles);
+    std::printf("saved     %s of lobes, %s are kept\n", bytesText(savedBytes(s, lobeBytes)).c_str(),
+                bytesText(s.keptLobes * lobeBytes).c_str());
+}
+
+Json describeSavings(const BakeSavings& s, std::uint64_t lobeBytes)
+{
+    return {{"atlas_places", s.places},
+            {"texels", s.texels},
+            {"lobes", s.lobes},
+            {"kept_lobes", s.keptLobes},
+            {"tiles", s.tiles},
+            {"dark_tiles", s.darkTiles},
+            {"saved_bytes", savedBytes(s, lobeBytes)},
+            {"kept_bytes", s.keptLobes * lobeBytes}};
+}
+
+} // namespace strandlight::cli
