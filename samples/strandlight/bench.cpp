@@ -12,9 +12,9 @@ Command addBench(CLI::App& parent)
 {
     CLI::App* app = parent.add_subcommand("bench", "Check, then time, on this machine");
     app->require_subcommand(1);
-    const std::array commands = {addBenchKernels(*app), addBenchHairFilter(*app),
-                                 addBenchHair(*app),    addBenchGi(*app),
-                                 addBenchAll(*app),     addBenchPage(*app)};
+    const std::array commands = {
+        addBenchKernels(*app), addBenchHairFilter(*app), addBenchHair(*app), addBenchSkip(*app),
+        addBenchGi(*app),      addBenchAll(*app),        addBenchPage(*app)};
     return {app, [commands] {
                 const auto parsed = [](const Command& c) { return c.app->parsed(); };
                 return std::find_if(commands.begin(), commands.end(), parsed)->run();

@@ -65,6 +65,7 @@ Command addBenchGi(CLI::App& bench);
 Command addBenchAll(CLI::App& bench);
 Command addBenchPage(CLI::App& bench);
 Command addBenchHair(CLI::App& bench);
+Command addBenchSkip(CLI::App& bench);
 
 // What they run; the result is the exit code.
 int benchKernels(const BenchOptions& options);

@@ -30,7 +30,8 @@ struct Part
 };
 
 constexpr std::array kParts = {Part{"kernels", addBenchKernels, false},
-                               Part{"gi", addBenchGi, true}, Part{"hair", addBenchHair, true}};
+                               Part{"gi", addBenchGi, true}, Part{"hair", addBenchHair, true},
+                               Part{"skip", addBenchSkip, false}};
 
 // As if it had been typed, so that a benchmark has one way in.
 void runPart(const Part& part, const Options& o)
@@ -67,7 +68,7 @@ void writePage(const Options& o)
         benches.push_back(std::move(json));
     }
     if (benches.empty())
-        throw FileError(o.folder, "", "holds no kernels.json, gi.json or hair.json");
+        throw FileError(o.folder, "", "holds no kernels.json, gi.json, hair.json or skip.json");
     const fs::path page = fs::path(o.folder) / "report.html";
     writeFileAtomically(page, benchPageHtml(benches, o.folder));
     std::printf("wrote     %s\n", page.c_str());

@@ -1,0 +1,146 @@
+#include "passes/skip_study.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+
+#include "engine/scene/grooms.hpp"
+#include "engine/scene/procedural.hpp"
+#include "passes/bake.hpp"
+#include "passes/hair_render.hpp"
+#include "passes/render_frame.hpp"
+
+namespace strandlight {
+namespace {
+
+struct SkipCase
+{
+    std::string name;
+    Scene scene;
+    HairStrands hair;
+    std::vector<std::string> unneeded; // parts of names of passes
+};
+
+Scene fullScene()
+{
+    Scene scene = buildRoomScene();
+    std::vector<glm::uvec3> triangles;
+    std::vector<std::uint32_t> materials;
+    for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+        const glm::uvec3 t = scene.triangles[i];
+        const float height =
+            std::min({scene.vertices[t.x].position.y, scene.vertices[t.y].position.y,
+                      scene.vertices[t.z].position.y});
+        if (height > 2.99f) // the ceiling
+            continue;
+        triangles.push_back(t);
+        materials.push_back(scene.triangleMaterials[i]);
+    }
+    scene.triangles = std::move(triangles);
+    scene.triangleMaterials = std::move(materials);
+    scene.lights = {PunctualLight{.position = {0.0f, 2.5f, 0.5f}}};
+    scene.environment = Environment{CpuImage(16, 8, glm::vec4(1.0f))};
+    return scene;
+}
+
+std::vector<SkipCase> makeCases(std::uint32_t strands)
+{
+    GroomSettings groom = groomSettings("short");
+    groom.strands = strands;
+    const SkipCase full{"full", fullScene(), makeGroom("short", groom), {}};
+    std::vector<SkipCase> cases{full};
+    const auto add = [&](const char* name, std::vector<std::string> unneeded,
+                         const std::function<void(SkipCase&)>& take) {
+        cases.push_back(full);
+        cases.back().name = name;
+        cases.back().unneeded = std::move(unneeded);
+        take(cases.back());
+    };
+    add("without environment", {"environment", "sky"},
+        [](SkipCase& c) { c.scene.environment.reset(); });
+    add("without hair", {"hair"}, [](SkipCase& c) { c.hair = {}; });
+    add("without lamp", {"punctual"}, [](SkipCase& c) { c.scene.lights.clear(); });
+    add("without metal or gloss", {"specular", "prefilter", "sg environment"}, [](SkipCase& c) {
+        for (Material& material : c.scene.materials)
+            material.metallic = material.specular = 0.0f;
+    });
+    add("furnace", {"environment", "sky", "hair", "punctual", "specular"}, [](SkipCase& c) {
+        c.scene = buildFurnaceScene(0.5f);
+        c.hair = {};
+    });
+    add("without light", {"sg ", "environment", "sky", "hair", "punctual"}, [](SkipCase& c) {
+        c.scene = buildDarkBoxScene();
+        c.hair = {};
+    });
+    add("empty", {""}, [](SkipCase& c) {
+        c.scene = buildEmptyScene();
+        c.hair = {};
+    });
+    return cases;
+}
+
+void drawFrame(Context& context, const SkipCase& c, const SgBake& bake,
+               const SkipSettings& settings, SkipRow& row)
+{
+    const Camera camera = defaultCamera(c.scene);
+    GpuScene device = c.scene.triangles.empty() ? GpuScene() : uploadScene(context, c.scene);
+    for (int i = 0; i < 2; ++i) { // drivers compile at first use
+        const FrameResult frame = renderFrame(context, c.scene, device, bake, camera,
+                                              {.width = settings.width, .height = settings.height});
+        HairRenderSettings over;
+        over.width = settings.width;
+        over.height = settings.height;
+        over.background = &frame.radiance;
+        const HairFrame hair = renderHair(context, c.hair, &c.scene, camera, over);
+        row.passes.clear();
+        row.frameMilliseconds = 0.0;
+        for (const auto* timings : {&frame.timings, &hair.timings})
+            for (const PassTiming& timing : *timings) {
+                row.passes.push_back(timing.pass);
+                row.frameMilliseconds += timing.milliseconds;
+            }
+        if (i == 0)
+            row.skipped += frame.skipped.size() + hair.skipped.size();
+    }
+}
+
+SkipRow measureCase(const ContextSettings& settings, const SkipCase& c, const SkipSettings& s)
+{
+    Context context = Context::headless(settings);
+    SkipRow row{.name = c.name};
+    BakeSettings wanted;
+    wanted.atlasResolution = s.atlas;
+    wanted.lightfieldSize = 8;
+    wanted.samplesPerDirection = s.samples;
+    wanted.steps = s.steps;
+    BakeStatistics statistics;
+    const auto start = std::chrono::steady_clock::now();
+    const SgBake bake = bakeScene(context, c.scene, wanted, &statistics);
+    row.bakeSeconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    row.captureDispatches = statistics.captureDispatches;
+    row.lobes = bake.radiance.keptCount();
+    row.environmentLobes = bake.environment ? bake.environment->keptCount() : 0;
+    row.skipped = statistics.skipped.size();
+    drawFrame(context, c, bake, s, row);
+    row.pipelines = context.pipelinesCreated();
+    row.peakBytes = context.peakBytesAllocated();
+    for (const std::string& pass : row.passes)
+        if (std::any_of(c.unneeded.begin(), c.unneeded.end(), [&](const std::string& part) {
+                return pass.find(part) != std::string::npos;
+            }))
+            row.wrong.push_back(pass);
+    return row;
+}
+
+} // namespace
+
+std::vector<SkipRow> studySkips(const ContextSettings& device, const SkipSettings& settings)
+{
+    std::vector<SkipRow> rows;
+    for (const SkipCase& c : makeCases(settings.strands))
+        rows.push_back(measureCase(device, c, settings));
+    return rows;
+}
+
+} // namespace strandlight
