@@ -95,6 +95,24 @@ UNetReach unetReach(const UNetDesc& net)
     return reach;
 }
 
+std::vector<LayerTiles> layerTiles(const UNetDesc& net, const TensorDesc& x, const UNetTiles& tiles)
+{
+    std::vector<LayerTiles> layers;
+    const auto add = [&](const std::string& name, std::uint32_t level, const TileList& list,
+                         std::uint64_t weights, std::uint32_t workLevel) {
+        const auto pixels = [&](std::uint32_t l) { return std::uint64_t(x.h >> l) * (x.w >> l); };
+        const Extent2 grid = tileGrid({1, 1, x.h >> level, x.w >> level});
+        layers.push_back(
+            {name, level, list.arguments, grid.h * grid.w, weights * pixels(workLevel)});
+    };
+    for (std::uint32_t l = net.head > 0 ? 0 : 1; l <= net.levels(); ++l)
+        add("enc" + std::to_string(l), l, tiles.skip[l], net.encoder(l).weightElements(), l);
+    for (std::uint32_t l = net.levels(); l-- > 0;) // a transposed one works by input pixel
+        add("dec" + std::to_string(l), l, tiles.up[l], net.decoder(l).weightElements(), l + 1);
+    add("out", 0, tiles.y, net.last().weightElements(), 0);
+    return layers;
+}
+
 UNetTiles addUNetTilesPass(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x,
                            const TouchedBlocks& touched, const TileRows& rows)
 {

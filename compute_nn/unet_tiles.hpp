@@ -2,6 +2,7 @@
 // layer of a U-Net, each as much wider than the next as that one reads.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "compute_nn/network_shapes.hpp"
@@ -51,6 +52,19 @@ struct TileRows
     std::uint32_t firstRow = 0;  // [firstRow, endRow) matter
     std::uint32_t endRow = 0;
 };
+
+// One layer's tiles, as its pass is called.
+struct LayerTiles
+{
+    std::string layer;
+    std::uint32_t level = 0; // of its output; 0: full size
+    BufferId arguments;      // the first of its numbers: active tiles
+    std::uint32_t all = 0;
+    std::uint64_t work = 0; // multiply-adds of all tiles
+};
+// In the order in which they run, for an input x [1,in,H,W].
+std::vector<LayerTiles> layerTiles(const UNetDesc& net, const TensorDesc& x,
+                                   const UNetTiles& tiles);
 
 // Lists of tiles in row-major order, for an input x [1,in,H,W].
 UNetTiles addUNetTilesPass(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x,

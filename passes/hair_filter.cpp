@@ -104,8 +104,11 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
         TensorDesc desc = picture;
         desc.h = band.tensorEnd - band.rows.tensorRow;
         std::optional<UNetTiles> tiles;
-        if (settings.skipTiles)
+        if (settings.skipTiles) {
             tiles = addUNetTilesPass(graph, net, desc, touched, band.rows);
+            const std::vector<LayerTiles> layers = layerTiles(net, desc, *tiles);
+            result.tiles.insert(result.tiles.end(), layers.begin(), layers.end());
+        }
         const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.depth,
                                             createUNetInput(graph, net, desc), band.rows.tensorRow,
                                             tiles ? &tiles->input : nullptr);

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "compute_nn/network_shapes.hpp"
 #include "compute_nn/parameters.hpp"
+#include "compute_nn/unet_tiles.hpp"
 #include "passes/hair_passes.hpp"
 
 namespace strandlight {
@@ -30,8 +32,9 @@ struct HairFilterSettings
 
 struct HairComposite
 {
-    ImageId filtered; // RGBA32F: premultiplied hair radiance, 1 - transmittance
-    ImageId radiance; // RGBA32F: hair over the background
+    ImageId filtered;              // RGBA32F: premultiplied hair radiance, 1 - transmittance
+    ImageId radiance;              // RGBA32F: hair over the background
+    std::vector<LayerTiles> tiles; // of every band's layers; empty without skipTiles
 };
 
 // `over` holds zeros in `filtered` and the background in `radiance`. Pixels whose exact

@@ -54,6 +54,21 @@ void addTimings(std::vector<PassTiming>& sum, const std::vector<PassTiming>& mor
     }
 }
 
+// Bands together.
+void addTiles(std::vector<HairTileCount>& sum, const RenderGraph& graph,
+              const std::vector<LayerTiles>& layers)
+{
+    for (const LayerTiles& layer : layers) {
+        auto same = std::find_if(sum.begin(), sum.end(),
+                                 [&](const HairTileCount& t) { return t.layer == layer.layer; });
+        if (same == sum.end())
+            same = sum.insert(same, HairTileCount{layer.layer, layer.level});
+        same->active += graph.read<std::uint32_t>(layer.arguments).front();
+        same->all += layer.all;
+        same->work += double(layer.work);
+    }
+}
+
 CpuImage backgroundPicture(const HairRenderSettings& settings)
 {
     if (settings.background)
@@ -203,10 +218,15 @@ public:
             over.radiance =
                 addHairBackdropPass(graph, buffers_, view, settings_, lights, over.radiance);
         const ParameterIds weights(graph, settings_.network->parameters);
-        addHairFilterPasses(graph, settings_.network->net, weights, input, over);
+        const HairComposite done =
+            addHairFilterPasses(graph, settings_.network->net, weights, input, over,
+                                {.skipTiles = settings_.skipTiles});
         graph.output(input.exact);
+        for (const LayerTiles& layer : done.tiles)
+            graph.output(layer.arguments);
         graph.run();
         addTimings(out_.timings, graph.timings());
+        addTiles(out_.tiles, graph, done.tiles);
         out_.exactTransmittance = graph.read(input.exact);
         out_.radiance = radiance.download();
         out_.hair = filtered.download();

@@ -59,6 +59,7 @@ struct HairRenderSettings
     std::uint32_t shadowSize = 1024; // texels a side, four samples each
     HairFilter filter = HairFilter::Average;
     HairNetwork* network = nullptr; // of HairFilter::UNet; outlives renderHair
+    bool skipTiles = true;          // of that: compute only what hair needs; changes no bit
     bool exactCoverage = false;     // fill HairFrame::exactTransmittance
 
     float roughness = 0.3f;               // longitudinal, in [0.05, 1] (Chiang 2016)
@@ -75,6 +76,16 @@ struct HairRenderSettings
     glm::vec3 backgroundColor = glm::vec3(0.05f);
 };
 
+// What a layer of the filter network computed, in tiles of 8x8 pixels of its output.
+struct HairTileCount
+{
+    std::string layer;
+    std::uint32_t level = 0; // 0: full size
+    std::uint32_t active = 0;
+    std::uint32_t all = 0;
+    double work = 0.0; // multiply-adds of all tiles
+};
+
 struct HairFrame
 {
     CpuImage radiance; // linear [height, width], hair over background
@@ -82,6 +93,7 @@ struct HairFrame
     CpuImage exactTransmittance;      // [height, width] in x; empty unless asked for
     std::vector<PassTiming> timings;  // GPU milliseconds, summed over frames by pass
     std::vector<std::string> skipped; // what was not needed, and why
+    std::vector<HairTileCount> tiles; // of HairFilter::UNet, in order of the layers
     std::uint32_t lod = 1;            // that was used
     std::uint32_t drawnStrands = 0;
     std::uint32_t drawnSegments = 0;

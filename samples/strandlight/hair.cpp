@@ -11,6 +11,7 @@
 #include "passes/hair_network.hpp"
 #include "passes/hair_render.hpp"
 #include "samples/strandlight/commands.hpp"
+#include "samples/strandlight/hair_stats.hpp"
 #include "samples/strandlight/hair_surroundings.hpp"
 #include "samples/strandlight/outputs.hpp"
 
@@ -93,14 +94,6 @@ std::uint32_t framesOf(std::uint32_t samples, const char* option)
     return samples / kSamplesPerFrame;
 }
 
-double totalMilliseconds(const HairFrame& frame)
-{
-    double total = 0.0;
-    for (const PassTiming& timing : frame.timings)
-        total += timing.milliseconds;
-    return total;
-}
-
 // What the user gave of a groom's settings.
 Json describeGroom(const GroomOptions& o)
 {
@@ -147,6 +140,7 @@ Json describe(const std::string& command, const Options& o, const Context& conte
                       {"drawn_strands", frame.drawnStrands},
                       {"drawn_segments", frame.drawnSegments},
                       {"passes", passes},
+                      {"tiles", describeTiles(frame)},
                       {"skipped", frame.skipped},
                       {"blocks", frame.blocks},
                       {"empty_blocks", frame.emptyBlocks},
@@ -154,24 +148,6 @@ Json describe(const std::string& command, const Options& o, const Context& conte
                       {"peak_device_bytes", context.peakBytesAllocated()},
                       {"seconds", seconds}};
     return json;
-}
-
-void printStats(const Context& context, const HairStrands& hair, const HairFrame& frame)
-{
-    std::printf("device    %s\n", context.device().name.c_str());
-    std::printf("hair      %u strands, %u segments drawn, level of detail %u\n", frame.drawnStrands,
-                frame.drawnSegments, frame.lod);
-    for (const PassTiming& timing : frame.timings)
-        std::printf("pass      %-24s %9.3f ms\n", timing.pass.c_str(), timing.milliseconds);
-    for (const std::string& pass : frame.skipped)
-        std::printf("culled    %s\n", pass.c_str());
-    std::printf("together  %.3f ms, device memory %s\n", totalMilliseconds(frame),
-                bytesText(context.peakBytesAllocated()).c_str());
-    std::printf(
-        "skipped   %zu passes, %u of %u strands (level of detail), %u of %u blocks of 8x8 "
-        "pixels (no hair)\n",
-        frame.skipped.size(), hair.strandCount() - frame.drawnStrands, hair.strandCount(),
-        frame.emptyBlocks, frame.blocks);
 }
 
 int run(const std::string& command, Options& o)
@@ -208,7 +184,7 @@ int run(const std::string& command, Options& o)
 
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     if (o.stats)
-        printStats(context, hair, frame);
+        printHairStats(context, hair, frame);
     for (const std::string& output : o.view.outputs)
         std::printf("wrote     %s, %.1f s\n", output.c_str(), elapsed.count());
     writeJson(o.json, describe(command, o, context, camera, hair, frame, elapsed.count()));
@@ -221,7 +197,8 @@ void addPictureOptions(CLI::App& app, Options& o)
     o.view.size = "640x384";
     addViewOptions(app, o.view);
     app.add_flag("!--no-shadows", o.settings.shadows, "Do not let hair shadow itself");
-    app.add_flag("--stats", o.stats, "Print passes that ran, milliseconds, and what was culled");
+    app.add_flag("--stats", o.stats,
+                 "Print passes that ran, milliseconds, tiles, and what was culled");
     addJsonOption(app, o.json);
     addDeviceOptions(app, o.device);
 }

@@ -53,6 +53,34 @@ TEST_CASE("hair render twice gives the same bytes, and another frame other noise
     CHECK(fileBytes(path("a.json")).size() > 0);
 }
 
+TEST_CASE("filtered by the built-in network at a real size, twice the same bytes; tiles are told")
+{
+    const TemporaryFolder folder;
+    const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+    const auto filtered = [&](const std::string& output, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"hair", "render", "builtin:wavy", "--strands",
+                                              "2000", "--size", "640x384",      "--filter",
+                                              "unet", "-o",     output};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return runCommand(arguments);
+    };
+    const CommandResult first = filtered(path("a.exr"), {"--stats", "--json", path("a.json")});
+    CAPTURE(first.errors);
+    REQUIRE(first.exitCode == 0);
+    REQUIRE(filtered(path("b.exr"), {}).exitCode == 0);
+    CHECK(fileBytes(path("a.exr")) == fileBytes(path("b.exr")));
+
+    CHECK(first.output.find("tiles     out") != std::string::npos);
+    CHECK(first.output.find("of 3840, ") != std::string::npos); // 80 x 48
+    CHECK(first.output.find("saved ") != std::string::npos);
+    const nlohmann::json tiles = readJson(path("a.json"))["result"]["tiles"];
+    REQUIRE(tiles.size() == 7);
+    for (const nlohmann::json& layer : tiles) {
+        CHECK(layer["active"] > 0);
+        CHECK(layer["active"] < layer["all"]);
+    }
+}
+
 TEST_CASE("more samples come nearer to the reference")
 {
     const TemporaryFolder folder;

@@ -212,6 +212,19 @@ TEST_CASE("hair filter: a picture by a network, twice the same, and what it refu
     CHECK(sameBytes(frame.radiance, render().radiance));
     CHECK(frame.radiance.at(39, 39).x == doctest::Approx(settings.backgroundColor.x));
     CHECK(frame.hair.at(39, 39) == glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    REQUIRE_EQ(frame.tiles.size(), 7);        // three down, three up, the last
+    CHECK_EQ(frame.tiles.front().all, 3 * 3); // 20x20 pixels
+    CHECK_EQ(frame.tiles.back().all, 5 * 5);
+    std::uint32_t touched = 0; // what the last layer is for
+    for (std::uint32_t tile = 0; tile < 25; ++tile) {
+        bool hair = false;
+        for (std::uint32_t i = 0; i < 64; ++i)
+            hair |=
+                frame.exactTransmittance.at(tile % 5 * 8 + i % 8, tile / 5 * 8 + i / 8).x < 1.0f;
+        touched += hair ? 1 : 0;
+    }
+    CHECK_EQ(frame.tiles.back().active, touched);
+    CHECK_LT(touched, 25);
     settings.frames = 2;
     CHECK_THROWS_WITH_AS((void)render(), doctest::Contains("four samples"), Error);
     settings.frames = 1;
