@@ -31,4 +31,12 @@ foreach(folder engine/base engine/vk engine/graph engine/scene compute_nn passes
         endif()
     endforeach()
 endforeach()
+# A device's compiler may take every float for a number: shaders look at bits (shared/nan_bits.h says so and is let off).
+file(GLOB_RECURSE files ${ROOT}/shaders/*)
+foreach(file ${files})
+    file(STRINGS ${file} tests REGEX "(^|[^a-zA-Z_])is(nan|inf)\\(")
+    if(tests AND NOT file MATCHES "(nan_bits.h|README.md)$")
+        message(SEND_ERROR "${file}: isnan or isinf: ${tests}")
+    endif()
+endforeach()
 message(STATUS "layering checked, ${bad} bad includes")
