@@ -60,16 +60,15 @@ void UNetDesc::check(const TensorDesc& x) const
 
 UNetDesc hairUNet(HairUNetSize size)
 {
-    UNetDesc net{.in = 25, .out = 12, .head = 0, .down = {32, 48, 64}, .up = {48, 32, 16}};
-    if (size == HairUNetSize::Small) {
-        net.down = {16, 24, 32};
-        net.up = {24, 16, 16};
+    switch (size) {
+    case HairUNetSize::Small:
+        return {.in = 27, .out = 12, .head = 0, .down = {16, 24, 32}, .up = {24, 16, 16}};
+    case HairUNetSize::Medium:
+        return {.in = 27, .out = 12, .head = 0, .down = {32, 48, 64}, .up = {48, 32, 16}};
+    case HairUNetSize::Large:
+        break;
     }
-    if (size == HairUNetSize::Large) {
-        net.down = {48, 64, 96};
-        net.up = {64, 48, 16};
-    }
-    return net;
+    return {.in = 27, .out = 12, .head = 16, .down = {40, 56, 80}, .up = {56, 40, 24}};
 }
 
 UNetDesc benchmarkUNet()

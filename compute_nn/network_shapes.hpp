@@ -104,8 +104,9 @@ enum class HairUNetSize : std::uint32_t
     Large
 };
 
-// The hair filter: 25 planes of samples -> brightness, illumination, transmittance and the nine
-// logits of a kernel (passes/hair_filter.hpp). No head: the planes themselves are the last skip.
+// The hair filter: 27 planes -> brightness, illumination, transmittance and the nine logits of a
+// kernel (passes/hair_filter.hpp). Without a head, as small and medium, the planes themselves are
+// the last skip.
 UNetDesc hairUNet(HairUNetSize size = HairUNetSize::Medium);
 
 // A network to time kernels with: four levels, 4x4 transposed kernels, 24 planes -> 3.

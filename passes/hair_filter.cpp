@@ -67,7 +67,7 @@ void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const Te
     PassBuilder pass = graph.addComputePass("hair composite");
     const BufferId answer = pass.read(y.buffer);
     const BufferId list = tiles ? pass.read(tiles->tiles) : answer;
-    const ImageId mean = pass.read(input.mean);
+    const ImageId blended = pass.read(input.blended);
     const Binding exact(pass.sample(input.exact), Filter::Nearest);
     over.filtered = pass.write(over.filtered);
     over.radiance = pass.write(over.radiance);
@@ -75,10 +75,10 @@ void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const Te
         y.view(), size.x, size.y, rows.firstRow, std::min(rows.endRow, size.y), rows.tensorRow};
     if (tiles)
         pass.dispatchIndirect(kernels::hair_composite, tiles->arguments, tileArguments(1, 1), push,
-                              {answer, mean, exact, over.filtered, over.radiance, list}, {1});
+                              {answer, blended, exact, over.filtered, over.radiance, list}, {1});
     else
         pass.dispatch(kernels::hair_composite, {y.desc.w, y.desc.h, 1}, push,
-                      {answer, mean, exact, over.filtered, over.radiance, list}, {0});
+                      {answer, blended, exact, over.filtered, over.radiance, list}, {0});
 }
 
 } // namespace
@@ -109,9 +109,9 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
             const std::vector<LayerTiles> layers = layerTiles(net, desc, *tiles);
             result.tiles.insert(result.tiles.end(), layers.begin(), layers.end());
         }
-        const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.depth,
-                                            createUNetInput(graph, net, desc), band.rows.tensorRow,
-                                            tiles ? &tiles->input : nullptr);
+        const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.blended,
+                                            input.depth, createUNetInput(graph, net, desc),
+                                            band.rows.tensorRow, tiles ? &tiles->input : nullptr);
         const UNetValues values = unetForward(graph, net, parameters, x, tiles ? &*tiles : nullptr);
         addCompositePass(graph, input, values.y, band.rows, tiles ? &tiles->y : nullptr, result);
     }

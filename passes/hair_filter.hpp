@@ -16,8 +16,8 @@ namespace strandlight {
 struct HairFilterInput
 {
     HairSampleIds samples; // with features
-    ImageId mean;          // RGBA32F, the four samples' mean (HairSums::hair)
     ImageId exact;         // R32F (addHairCoveragePass)
+    ImageId blended;       // RGBA32F (addHairBlendPass)
     HairDepthScale depth;
 };
 
@@ -38,7 +38,7 @@ struct HairComposite
 };
 
 // `over` holds zeros in `filtered` and the background in `radiance`. Pixels whose exact
-// transmittance is 1 keep both. Throws Error when the network is not one of 25 planes to 12 whose
+// transmittance is 1 keep both. Throws Error when the network is not one of 27 planes to 12 whose
 // levels divide 8.
 HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
                                   const ParameterIds& parameters, const HairFilterInput& input,

@@ -9,7 +9,7 @@
 namespace strandlight {
 namespace {
 
-static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 100 &&
+static_assert(sizeof(gpu::HairStrandPush) == 112 && sizeof(gpu::HairOpaquePush) == 100 &&
               sizeof(gpu::HairShadePush) == 56 && sizeof(gpu::HairLight) == 120 &&
               sizeof(gpu::HairInputPush) == 36);
 
@@ -161,6 +161,43 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
     return product;
 }
 
+ImageId addHairBlendPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
+                         const HairView& view, const HairDepthScale& depth, ImageId exact)
+{
+    const ImageDesc desc{view.width, view.height, 1, Format::RGBA32F, 1};
+    ImageId near = graph.createImage("hair weighted radiance", desc);
+    ImageId deep = graph.createImage("hair weighted brightness", desc.with(Format::RG32F));
+    {
+        PassBuilder pass = graph.addRasterPass("hair blend");
+        near = pass.color(near, {true, glm::vec4(0.0f)});
+        deep = pass.color(deep, {true, glm::vec4(0.0f)});
+        [[maybe_unused]] const ImageId hidden =
+            pass.depth(graph.createImage("hair blend depth", desc.with(Format::Depth32F)));
+        drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_unlit_frag, Blend::Add);
+        const StrandIds strands = readStrands(graph, pass, buffers);
+        pass.read(shaded);
+        gpu::HairStrandPush push = strandPush(buffers, view);
+        push.border = 1.0f; // as in the coverage pass
+        push.blendDepth = depth.offset;
+        push.blendScale = depth.scale;
+        const RasterDesc raster{.vertex = &kernels::hair_blend_vert,
+                                .fragment = &kernels::hair_blend_frag,
+                                .depthWrite = false,
+                                .blend = Blend::Add};
+        pass.draw(raster, buffers.segmentCount * 6, 1, push,
+                  {strands.points, strands.tangents, strands.segments, shaded});
+    }
+    PassBuilder pass = graph.addComputePass("hair blend resolve");
+    for (const ImageId image : {near, deep, exact})
+        pass.sample(image);
+    const ImageId blended = pass.write(graph.createImage("hair blended", desc));
+    pass.dispatch(kernels::hair_blend_resolve, {view.width, view.height, 1},
+                  gpu::HairResolvePush{view.width, view.height, 1.0f, 1},
+                  {Binding(near, Filter::Nearest), Binding(deep, Filter::Nearest),
+                   Binding(exact, Filter::Nearest), blended});
+    return blended;
+}
+
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
                             float weight, std::uint32_t count)
 {
@@ -197,8 +234,8 @@ TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height)
 }
 
 TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          const HairDepthScale& depth, const TensorId& x, std::uint32_t firstRow,
-                          const TileList* tiles)
+                          ImageId blended, const HairDepthScale& depth, const TensorId& x,
+                          std::uint32_t firstRow, const TileList* tiles)
 {
     if (!samples.features.valid() || !samples.shape.valid())
         throw Error("hair: the network's input needs strands drawn with features");
@@ -212,6 +249,7 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     pass.sample(samples.features);
     pass.sample(samples.shape);
     pass.sample(exact);
+    pass.read(blended);
     const BufferId planes = pass.write(x.buffer);
     const gpu::HairInputPush push{x.view(), firstRow,     extent.x,
                                   extent.y, depth.offset, depth.scale};
@@ -220,13 +258,13 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     if (tiles) {
         const BufferId list = pass.read(tiles->tiles);
         pass.dispatchIndirect(kernels::hair_input, tiles->arguments, tileArguments(1, 1), push,
-                              {features, shape, transmittance, planes, list}, {1});
+                              {features, shape, transmittance, planes, list, blended}, {1});
     } else {
         const std::uint32_t none[] = {0};
         const BufferId list =
             pass.read(graph.uploadBuffer("no tiles", std::span<const std::uint32_t>(none)));
         pass.dispatch(kernels::hair_input, {x.desc.w, x.desc.h, 1}, push,
-                      {features, shape, transmittance, planes, list}, {0});
+                      {features, shape, transmittance, planes, list, blended}, {0});
     }
     return x.as(planes);
 }

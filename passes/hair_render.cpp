@@ -151,8 +151,10 @@ public:
             addHairLobePasses(graph, buffers_, lit, lights_.empty(), *settings_.distant, view_,
                               settings_);
         const bool wanted = settings_.exactCoverage || settings_.filter == HairFilter::Coverage;
-        if (!wanted || settings_.filter == HairFilter::UNet) {
-            if (settings_.filter != HairFilter::UNet) // that has the pass in its own graph
+        const bool later = // in a graph of their own
+            settings_.filter == HairFilter::UNet || settings_.filter == HairFilter::Blend;
+        if (!wanted || later) {
+            if (!later)
                 out_.skipped.push_back("hair exact coverage: not asked for");
             graph.run();
         } else {
@@ -190,12 +192,40 @@ public:
         composite(out_, behind.download(), settings_);
     }
 
+    // All strands without samples.
+    void blendFrame()
+    {
+        Image radiance(context_, {settings_.width, settings_.height, 1, Format::RGBA32F, 1},
+                       "background");
+        RenderGraph graph(context_);
+        graph.setTimings(true);
+        const ImageId exact = addHairCoveragePass(graph, buffers_, view_);
+        const ImageId blended = addHairBlendPass(
+            graph, buffers_, graph.importBuffer(buffers_.shaded), view_, depth_, exact);
+        if (settings_.background)
+            radiance.upload(*settings_.background);
+        else
+            addHairBackdropPass(graph, buffers_, view_, settings_, std::uint32_t(lights_.size()),
+                                graph.importImage(radiance));
+        graph.output(blended);
+        graph.output(exact);
+        graph.run();
+        addTimings(out_.timings, graph.timings());
+        out_.exactTransmittance = graph.read(exact);
+        out_.hair = graph.read(blended);
+        out_.radiance = radiance.download();
+        for (std::size_t i = 0; i < out_.hair.pixels.size(); ++i) {
+            glm::vec4& hair = out_.hair.pixels[i];
+            hair.w = out_.exactTransmittance.pixels[i].x;
+            glm::vec4& pixel = out_.radiance.pixels[i];
+            pixel = glm::vec4(glm::vec3(hair) + hair.w * glm::vec3(pixel), 1.0f);
+        }
+    }
+
     // One frame through the network.
     void filterFrame()
     {
         const ImageDesc desc{settings_.width, settings_.height, 1, Format::RGBA32F, 1};
-        Image hair(context_, desc, "hair mean");
-        Image behind(context_, desc, "behind mean");
         Image filtered(context_, desc, "filtered hair");
         Image radiance(context_, desc, "hair over background");
         const auto lights = std::uint32_t(lights_.size());
@@ -207,9 +237,8 @@ public:
         input.samples = addHairStrandsPass(graph, buffers_, graph.importBuffer(buffers_.shaded),
                                            view, settings_, lights, false, true);
         input.exact = addHairCoveragePass(graph, buffers_, view);
-        input.mean = addHairResolvePass(graph, input.samples,
-                                        {graph.importImage(hair), graph.importImage(behind)}, 1.0f)
-                         .hair;
+        input.blended = addHairBlendPass(graph, buffers_, graph.importBuffer(buffers_.shaded), view,
+                                         depth_, input.exact);
         input.depth = depth_;
         HairComposite over{graph.importImage(filtered), graph.importImage(radiance)};
         if (settings_.background)
@@ -282,6 +311,8 @@ HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opa
     maker.shade();
     if (settings.filter == HairFilter::UNet)
         maker.filterFrame();
+    else if (settings.filter == HairFilter::Blend)
+        maker.blendFrame();
     else
         maker.averageFrames();
     countBlocks(frame);

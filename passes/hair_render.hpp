@@ -31,6 +31,7 @@ enum class HairFilter : std::uint32_t
     Average,         // their mean
     Coverage,        // their mean, scaled to the exact coverage (Enderton 2010, 3.3)
     AlphaToCoverage, // the mean of the device's own masks, which depend on alpha alone
+    Blend,           // no samples: all strands blended by alpha and depth (hair_blend.frag)
     UNet             // a network's answer (hair_filter.hpp); of one frame only
 };
 

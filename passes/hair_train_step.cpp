@@ -34,6 +34,9 @@ LossWeights uploadWeights(RenderGraph& graph, std::string_view name, std::span<c
 // The network without a head reads its input from level 0, [up, skip], in place.
 TensorId uploadInput(RenderGraph& graph, const UNetDesc& net, const HairBatch& batch)
 {
+    if (net.head > 0)
+        return uploadTensor(graph, "hair planes", {batch.n, net.in, batch.size, batch.size},
+                            batch.input);
     const std::size_t pixels = std::size_t(batch.size) * batch.size;
     const std::size_t planes = net.channels(0), up = net.upChannels(0);
     std::vector<float> level(batch.n * planes * pixels);

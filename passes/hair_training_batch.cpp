@@ -16,7 +16,6 @@ constexpr std::uint32_t kCropDimension = 0x63726f70u; // apart from other uses o
 constexpr std::uint32_t kTries = 6;                   // for a crop with hair in its middle
 constexpr float kMostStops = 1.5f;                    // of the exposure's augmentation
 constexpr std::uint32_t kInputPlanes = gpu::kHairInputPlanes;
-constexpr std::uint32_t kExactPlane = kInputPlanes - 1;
 
 // A table: the frames are unpacked again at every step. A value that is not finite (radiance that
 // was extrapolated from a sliver's pixel outside of it) counts as no light.
@@ -117,13 +116,17 @@ void fillHairCrop(HairBatch& batch, std::uint32_t slot, const HairTrainingFrame&
         for (std::uint32_t s = 0; s < 4; ++s)
             crop.read(first + 4 * kind + how.samples[s], input + (4 * kind + s) * pixels,
                       [&](float value) { return turned(kind, value, how); });
-    float* exact = input + kExactPlane * pixels;
-    crop.read(first + kExactPlane, exact, same);
+    float* exact = input + gpu::kHairInputExact * pixels;
+    crop.read(first + gpu::kHairInputExact, exact, same);
+    for (const std::uint32_t plane : {gpu::kHairInputBlended, gpu::kHairInputDeep})
+        crop.read(first + plane, input + plane * pixels,
+                  [&](float value) { return turned(0, value, how); });
+    const float* blended = input + gpu::kHairInputBlended * pixels;
 
     float* image = batch.image.data() + slot * 4 * pixels;
     float* radiance = batch.truth.data() + slot * 4 * pixels;
     for (std::uint32_t c = 0; c < 3; ++c) {
-        crop.read(first + kInputPlanes + c, image + c * pixels, exposed);
+        crop.read(first + kHairBlendedPlane + c, image + c * pixels, exposed);
         crop.read(truth + c, radiance + c * pixels, exposed);
     }
     float* target = batch.target.data() + slot * kHairOutputs * pixels;
@@ -131,7 +134,8 @@ void fillHairCrop(HairBatch& batch, std::uint32_t slot, const HairTrainingFrame&
     crop.read(truth + 3, target + 2 * pixels, same);
     for (std::size_t i = 0; i < pixels; ++i) {
         target[i] = std::log1p(0.2126f * radiance[i] + 0.7152f * radiance[pixels + i] +
-                               0.0722f * radiance[2 * pixels + i]);
+                               0.0722f * radiance[2 * pixels + i]) -
+                    blended[i];
         target[2 * pixels + i] -= exact[i];
     }
 }
@@ -154,7 +158,8 @@ HairBatch drawHairBatch(std::span<const HairTrainingFrame> frames, std::uint32_t
             const glm::vec3 place = draw();
             corner = glm::uvec2(std::uint32_t(place.x * places), std::uint32_t(place.y * places));
             const glm::uvec2 middle = corner + size / 2;
-            if (frame.at(frame.repeatPlane(repeat) + kExactPlane, middle.x, middle.y) < 0.99f)
+            if (frame.at(frame.repeatPlane(repeat) + gpu::kHairInputExact, middle.x, middle.y) <
+                0.99f)
                 break;
         }
         fillHairCrop(batch, slot, frame, repeat, corner, how);

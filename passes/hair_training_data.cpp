@@ -156,19 +156,23 @@ private:
         const HairSampleIds samples = strands(graph, view, true);
         const ImageId exact = addHairCoveragePass(graph, buffers_, view);
         const TensorDesc desc = hairInputDesc(settings_.size, settings_.size);
-        const BufferId planes =
-            addHairInputPass(graph, samples, exact, hairDepthScale(hair_, camera_),
-                             createTensor(graph, "hair network input", desc))
-                .buffer;
+        const HairDepthScale depth = hairDepthScale(hair_, camera_);
+        const ImageId blended = addHairBlendPass(
+            graph, buffers_, graph.importBuffer(buffers_.shaded), view, depth, exact);
+        const BufferId planes = addHairInputPass(graph, samples, exact, blended, depth,
+                                                 createTensor(graph, "hair network input", desc))
+                                    .buffer;
         addHairResolvePass(graph, samples,
                            {graph.importImage(sum.hair), graph.importImage(sum.behind)}, 1.0f);
         graph.output(planes);
+        graph.output(blended);
         graph.run();
         const std::size_t first = frame_.repeatPlane(repeat) * pixels();
         const std::vector<float> values = graph.read<float>(planes);
         std::transform(values.begin(), values.end(), frame_.planes.begin() + std::ptrdiff_t(first),
                        [](float value) { return glm::packHalf1x16(value); });
-        store(frame_.repeatPlane(repeat) + gpu::kHairInputPlanes, sum.hair.download(), 3);
+        store(frame_.repeatPlane(repeat) + kHairBlendedPlane, graph.read(blended), 3);
+        store(frame_.repeatPlane(repeat) + kHairMeanPlane, sum.hair.download(), 3);
         swapSegments(buffers_, set);
     }
 

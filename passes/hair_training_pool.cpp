@@ -13,7 +13,7 @@ namespace strandlight {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x46544853u; // "SHTF"
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 struct Entry
 {

@@ -22,8 +22,9 @@ CpuImage composite(std::span<const float> y, std::span<const float> color, const
     const std::size_t pixels = std::size_t(batch.size) * batch.size;
     CpuImage picture(batch.size, batch.size);
     for (std::size_t i = 0; i < pixels; ++i) {
-        const float brightness = std::max(0.0f, std::expm1(y[i]));
-        const float exact = batch.input[24 * pixels + i];
+        const float blended = batch.input[gpu::kHairInputBlended * pixels + i];
+        const float brightness = std::max(0.0f, std::expm1(blended + y[i]));
+        const float exact = batch.input[gpu::kHairInputExact * pixels + i];
         const float transmittance = std::clamp(exact + y[2 * pixels + i], 0.0f, 1.0f);
         const glm::vec3 c(color[i], color[pixels + i], color[2 * pixels + i]);
         const float luminance = glm::dot(c, kLuminance);
@@ -75,7 +76,7 @@ CpuImage averagePicture(const HairTrainingFrame& frame, std::uint32_t i)
 
 CpuImage fourSamplesPicture(const HairTrainingFrame& frame)
 {
-    return pictureOf(frame, 25, 8, 4); // the samples' transparencies are planes 8 to 11
+    return pictureOf(frame, kHairMeanPlane, 8, 4); // the samples' transparencies are planes 8 to 11
 }
 
 double rootMeanSquare(const CpuImage& a, const CpuImage& b)

@@ -41,6 +41,7 @@ std::vector<Method> methodsOf(bool quick, bool network)
         methods.push_back({"256 averaged", HairFilter::Average, 64});
     methods.push_back({"4 alpha to coverage", HairFilter::AlphaToCoverage});
     methods.push_back({"4 coverage", HairFilter::Coverage});
+    methods.push_back({"blend", HairFilter::Blend});
     if (network)
         methods.push_back({"4 U-Net", HairFilter::UNet});
     return methods;

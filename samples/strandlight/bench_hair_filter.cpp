@@ -56,7 +56,7 @@ Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, con
     ImageDesc four = desc.with(Format::RGBA16F);
     four.samples = 4;
     Image transmittance(context, desc.with(Format::R32F), "exact");
-    Image mean(context, desc, "mean"), filtered(context, desc, "filtered");
+    Image blended(context, desc, "blended"), filtered(context, desc, "filtered");
     Image radiance(context, desc, "radiance"), features(context, four, "features");
     Image shape(context, four, "shape");
     transmittance.upload(exact);
@@ -65,7 +65,7 @@ Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, con
     HairFilterInput input;
     input.samples.features = graph.importImage(features);
     input.samples.shape = graph.importImage(shape);
-    input.mean = graph.importImage(mean);
+    input.blended = graph.importImage(blended);
     input.exact = graph.importImage(transmittance);
     const ParameterIds weights(graph, parameters);
     addHairFilterPasses(graph, net, weights, input,

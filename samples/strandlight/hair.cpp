@@ -52,11 +52,10 @@ struct NamedFilter
     const char* name;
     HairFilter filter;
 };
-constexpr NamedFilter kFilters[] = {{"none", HairFilter::None},
-                                    {"average", HairFilter::Average},
-                                    {"coverage", HairFilter::Coverage},
-                                    {"a2c", HairFilter::AlphaToCoverage},
-                                    {"unet", HairFilter::UNet}};
+constexpr NamedFilter kFilters[] = {
+    {"none", HairFilter::None},         {"average", HairFilter::Average},
+    {"coverage", HairFilter::Coverage}, {"a2c", HairFilter::AlphaToCoverage},
+    {"blend", HairFilter::Blend},       {"unet", HairFilter::UNet}};
 
 std::vector<std::string> filterNames()
 {

@@ -61,7 +61,8 @@ void saveWeights(const Options& o, const HairTraining& training)
     Safetensors file;
     training.parameters.save(file, false);
     file.metadata = {{"network", "hair filter, " + o.net},
-                     {"channels", "25 in, 12 out"},
+                     {"channels", std::to_string(training.net.in) + " in, " +
+                                      std::to_string(training.net.out) + " out"},
                      {"command", commandLine(o)},
                      {"commit", commit()}};
     file.save(o.output);

@@ -1,5 +1,5 @@
-// The network's answer over the background. Brightness and transmittance are the network's, the colour is that of the
-// samples around, weighted by the kernel it predicts. Pixels that no strand touches stay as they are.
+// The network's answer over the background. It corrects the blended brightness and the exact transmittance; the colour is
+// that of the blended radiance around, weighted by the kernel it predicts. Pixels that no strand touches stay as they are.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint TILES = 0; // 1: over a list of tiles
 
 layout(binding = 0, r32f) uniform readonly imageBuffer y;          // [12,H,W]
-layout(binding = 1, rgba32f) uniform readonly image2D samples;     // mean of four: premultiplied radiance
+layout(binding = 1, rgba32f) uniform readonly image2D blended;     // premultiplied radiance
 layout(binding = 2) uniform sampler2D exact;                       // transmittance
 layout(binding = 3, rgba32f) uniform writeonly image2D filtered;   // premultiplied radiance, 1 - transmittance
 layout(binding = 4, rgba32f) uniform image2D radiance;             // background, then hair over it
@@ -37,7 +37,8 @@ void main()
     }
     int plane = int(push.y.width * push.y.height);
     int at = int(push.y.offset) + inTensor.y * int(push.y.width) + inTensor.x;
-    float brightness = nnExp(imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
+    float blendedHere = nnLog1p(luminance(imageLoad(blended, pixel).rgb));
+    float brightness = nnExp(blendedHere + imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
     brightness = brightness < 0.0 ? 0.0 : brightness;
     float transmittance = exactHere + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;
     transmittance = keepNan(transmittance, clamp(transmittance, 0.0, 1.0));
@@ -53,10 +54,10 @@ void main()
     vec3 color = vec3(0.0);
     [[unroll]] for (int k = 0; k < int(kFilterTaps); ++k) {
         ivec2 tap = inside[k] ? pixel + ivec2(k % 3 - 1, k / 3 - 1) : pixel;
-        color += weight[k] * imageLoad(samples, tap).rgb;
+        color += weight[k] * imageLoad(blended, tap).rgb;
     }
     float size = luminance(color);
-    vec3 hair = size > 0.0 ? color * (brightness / size) : vec3(brightness); // grey where no sample knows better
+    vec3 hair = size > 0.0 ? color * (brightness / size) : vec3(brightness); // grey where no strand knows better
     imageStore(filtered, pixel, vec4(hair, 1.0 - transmittance));
     imageStore(radiance, pixel, vec4(hair + transmittance * imageLoad(radiance, pixel).rgb, 1.0));
 }

@@ -15,6 +15,7 @@ layout(binding = 1) uniform sampler2DMS shape;    // tangent
 layout(binding = 2) uniform sampler2D exact;      // transmittance
 layout(binding = 3, scalar) writeonly buffer Planes { float planes[]; };
 layout(binding = 4, r32ui) uniform readonly uimageBuffer tiles;
+layout(binding = 5, rgba32f) uniform readonly image2D blended; // premultiplied radiance, deep brightness
 layout(push_constant, scalar) uniform Push { HairInputPush push; };
 
 void main()
@@ -40,5 +41,8 @@ void main()
         planes[first + 16u * plane] = along.x * along.x - along.y * along.y;
         planes[first + 20u * plane] = 2.0 * along.x * along.y;
     }
-    planes[at + 24u * plane] = inside ? texelFetch(exact, from, 0).x : 1.0;
+    planes[at + kHairInputExact * plane] = inside ? texelFetch(exact, from, 0).x : 1.0;
+    vec4 mean = inside ? imageLoad(blended, from) : vec4(0.0);
+    planes[at + kHairInputBlended * plane] = nnLog1p(dot(mean.rgb, vec3(0.2126, 0.7152, 0.0722)));
+    planes[at + kHairInputDeep * plane] = nnLog1p(mean.a);
 }

@@ -31,7 +31,14 @@ struct HairStrandPush
     float border;        // pixels by which ribbons grow beyond their width
     float alpha;         // of a strand that covers its pixel
     uint frame;          // of the sample masks
+    float blendDepth;    // metres: where the blended radiance has weight 1
+    float blendScale;    // per metre: over the depth of the hair's bounding sphere
 };
+
+// By which exponents the blended radiance's weights fall over that depth.
+STRANDLIGHT_CONST(float) kHairBlendNear = 32.0f;
+STRANDLIGHT_CONST(float) kHairBlendDeep = 6.0f;
+
 
 struct HairOpaquePush
 {
@@ -122,9 +129,13 @@ struct HairResolvePush
     uint samples; // that are averaged, of four
 };
 
-// Planes of the network's input, [25, height, width]: value v of sample s is plane 4 v + s; the last is the exact
-// transmittance. Values: ln(1 + brightness), illumination, transparency, depth, tangent as cos and sin of its double angle.
-STRANDLIGHT_CONST(uint) kHairInputPlanes = 25u;
+// Planes of the network's input, [27, height, width]: value v of sample s is plane 4 v + s; then the exact transmittance
+// and ln(1 + brightness) of the blended radiance, near and deep. Values: ln(1 + brightness), illumination, transparency, depth, tangent
+// as cos and sin of its double angle.
+STRANDLIGHT_CONST(uint) kHairInputPlanes = 27u;
+STRANDLIGHT_CONST(uint) kHairInputExact = 24u;
+STRANDLIGHT_CONST(uint) kHairInputBlended = 25u;
+STRANDLIGHT_CONST(uint) kHairInputDeep = 26u;
 
 struct HairInputPush
 {
@@ -144,8 +155,8 @@ struct HairTouchedPush
     uint blocksDown;
 };
 
-// Planes of the network's output, [12, height, width]: ln(1 + brightness), illumination, what the transmittance is above
-// the exact one, nine logits of a kernel.
+// Planes of the network's output, [12, height, width]: what ln(1 + brightness) is above the blended one, illumination,
+// what the transmittance is above the exact one, nine logits of a kernel.
 STRANDLIGHT_CONST(uint) kHairOutputs = 12u;
 STRANDLIGHT_CONST(uint) kHairOutBrightness = 0u;
 STRANDLIGHT_CONST(uint) kHairOutTransmittance = 2u;

@@ -117,8 +117,15 @@ TEST_CASE("hair training: exposure scales radiance, samples change places")
                 REQUIRE(changed.input[(4 * kind + s) * kPixels + i] ==
                         plain.input[4 * kind * kPixels + from]);
         }
-        CHECK(std::expm1(double(changed.target[i])) ==
-              doctest::Approx(2.0 * std::expm1(double(plain.target[i]))).epsilon(1e-5));
+        const auto brightness = [&](const HairBatch& batch) { // the target is above the blended one
+            return std::expm1(double(batch.input[gpu::kHairInputBlended * kPixels + i]) +
+                              double(batch.target[i]));
+        };
+        CHECK(brightness(changed) == doctest::Approx(2.0 * brightness(plain)).epsilon(1e-5));
+        for (const std::size_t plane : {gpu::kHairInputBlended, gpu::kHairInputDeep})
+            CHECK(std::expm1(double(changed.input[plane * kPixels + i])) ==
+                  doctest::Approx(2.0 * std::expm1(double(plain.input[plane * kPixels + i])))
+                      .epsilon(1e-5));
         CHECK(changed.target[kPixels + i] == plain.target[kPixels + i]);
         CHECK(changed.target[2 * kPixels + i] == plain.target[2 * kPixels + i]);
         CHECK(changed.image[i] == 2.0f * plain.image[i]);
