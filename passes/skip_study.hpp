@@ -20,8 +20,8 @@ struct SkipRow
     std::uint64_t lobes = 0;     // kept, of the radiance
     std::uint64_t environmentLobes = 0;
     std::uint64_t peakBytes = 0; // of device memory
-    double bakeSeconds = 0.0;
-    double frameMilliseconds = 0.0; // by the device's clock, of a second frame
+    double bakeSeconds = 0.0;       // least of `repeats`
+    double frameMilliseconds = 0.0; // least of as many, by the device's clock, after a warm-up
 };
 
 struct SkipSettings
@@ -31,6 +31,7 @@ struct SkipSettings
     std::uint32_t steps = 100; // of the fit
     std::uint32_t width = 160, height = 120;
     std::uint32_t strands = 1000;
+    std::uint32_t repeats = 1;
 };
 
 // The room without its ceiling, under a sky, with a lamp, metal and a head of hair; the same

@@ -32,8 +32,13 @@ int benchSkip(const BenchOptions& options)
     BenchReport report("bench skip", options, openDevice(options.device));
     SkipSettings settings;
     if (!options.quick)
-        settings = {
-            .atlas = 64, .samples = 8, .steps = 600, .width = 320, .height = 240, .strands = 8000};
+        settings = {.atlas = 64,
+                    .samples = 8,
+                    .steps = 600,
+                    .width = 320,
+                    .height = 240,
+                    .strands = 8000,
+                    .repeats = 3};
     const std::vector<SkipRow> rows = studySkips({.device = options.device.device}, settings);
     for (const SkipRow& row : rows) {
         if (!row.wrong.empty())
