@@ -1,9 +1,9 @@
 #include "engine/vk/pipeline_store.hpp"
 
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
+#include "engine/base/cache_folder.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/file.hpp"
 #include "engine/base/log.hpp"
@@ -21,10 +21,8 @@ constexpr std::uint32_t kPushBytes = 128; // the least that Vulkan promises, and
 
 fs::path cacheFile(const VkPhysicalDeviceProperties& properties)
 {
-    const char* xdg = std::getenv("XDG_CACHE_HOME");
-    const char* home = std::getenv("HOME");
-    const bool hasXdg = xdg != nullptr && *xdg != '\0';
-    if (!hasXdg && (home == nullptr || *home == '\0'))
+    const fs::path folder = cacheFolder();
+    if (folder.empty())
         return {};
     std::string uuid;
     for (const std::uint8_t byte : properties.pipelineCacheUUID) {
@@ -36,7 +34,6 @@ fs::path cacheFile(const VkPhysicalDeviceProperties& properties)
     const std::uint32_t name =
         crc32(std::span(reinterpret_cast<const std::uint8_t*>(properties.deviceName),
                         std::string_view(properties.deviceName).size()));
-    const fs::path folder = (hasXdg ? fs::path(xdg) : fs::path(home) / ".cache") / "strandlight";
     return folder / ("pipelines-" + uuid + "-" + std::to_string(name) + ".bin");
 }
 

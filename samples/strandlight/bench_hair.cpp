@@ -1,15 +1,19 @@
 // strandlight bench hair: held-out pictures of hair by method, against a supersampled truth.
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <memory>
 #include <optional>
 
+#include "engine/base/cache_folder.hpp"
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/hair_head.hpp"
 #include "passes/hair_network.hpp"
 #include "passes/hair_study.hpp"
+#include "passes/hair_truth.hpp"
 #include "samples/strandlight/bench.hpp"
 
 namespace strandlight::cli {
@@ -19,9 +23,17 @@ namespace {
 struct HairBench
 {
     BenchOptions common;
-    std::string weights;
-    std::string out; // folder of strips
+    std::vector<std::string> weights;
+    std::uint32_t samples = 0; // of the truth; 0: 1024, quick 256
+    bool keep = true;          // truths in the cache folder
+    std::string out;           // folder of strips
     std::string mohawk;
+};
+
+struct NamedNetwork
+{
+    std::string width;
+    HairNetwork network;
 };
 
 struct Method
@@ -29,10 +41,13 @@ struct Method
     std::string name;
     HairFilter filter = HairFilter::Average;
     std::uint32_t frames = 1;
+    HairNetwork* network = nullptr;
+    std::uint32_t lod = 1; // 0: by projected width
+    bool skipTiles = true;
 };
 
 // The first one is what the others' errors are divided by.
-std::vector<Method> methodsOf(bool quick, bool network)
+std::vector<Method> methodsOf(bool quick, std::vector<NamedNetwork>& networks)
 {
     std::vector<Method> methods = {{"4 averaged"},
                                    {"16 averaged", HairFilter::Average, 4},
@@ -42,9 +57,46 @@ std::vector<Method> methodsOf(bool quick, bool network)
     methods.push_back({"4 alpha to coverage", HairFilter::AlphaToCoverage});
     methods.push_back({"4 coverage", HairFilter::Coverage});
     methods.push_back({"blend", HairFilter::Blend});
-    if (network)
-        methods.push_back({"4 U-Net", HairFilter::UNet});
+    for (NamedNetwork& named : networks)
+        methods.push_back({"4 U-Net " + named.width, HairFilter::UNet, 1, &named.network});
+    if (networks.empty())
+        return methods;
+    const std::string name = "4 U-Net " + networks[0].width;
+    HairNetwork* first = &networks[0].network;
+    methods.push_back({name + ", all tiles", HairFilter::UNet, 1, first, 1, false});
+    for (const std::uint32_t lod : {2u, 4u, 0u})
+        methods.push_back({name + ", lod " + (lod > 0 ? std::to_string(lod) : "auto"),
+                           HairFilter::UNet, 1, first, lod});
     return methods;
+}
+
+const char* widthOf(const UNetDesc& net)
+{
+    const auto same = [&](HairUNetSize size) {
+        return net.down == hairUNet(size).down && net.up == hairUNet(size).up;
+    };
+    return same(HairUNetSize::Small)    ? "small"
+           : same(HairUNetSize::Medium) ? "medium"
+           : same(HairUNetSize::Large)  ? "large"
+                                        : "of other width";
+}
+
+std::vector<NamedNetwork> openNetworks(Context& context, const std::vector<std::string>& files)
+{
+    std::vector<NamedNetwork> networks;
+    for (const std::string& file : files) {
+        HairNetwork network = loadHairNetwork(context, file);
+        networks.push_back({widthOf(network.net), std::move(network)});
+    }
+    if (files.empty() && !builtinHairWeights().empty()) {
+        HairNetwork network = builtinHairNetwork(context);
+        networks.push_back({widthOf(network.net), std::move(network)});
+    }
+    for (const char* width : {"small", "medium", "large"})
+        if (std::none_of(networks.begin(), networks.end(),
+                         [&](const NamedNetwork& n) { return n.width == width; }))
+            std::printf("left out  U-Net %s: no --weights of that width\n", width);
+    return networks;
 }
 
 double millisecondsOf(const HairFrame& frame, const std::string& part)
@@ -52,6 +104,16 @@ double millisecondsOf(const HairFrame& frame, const std::string& part)
     double sum = 0.0;
     for (const PassTiming& timing : frame.timings)
         sum += timing.pass.find(part) != std::string::npos ? timing.milliseconds : 0.0;
+    return sum;
+}
+
+// Of the network's layers, what they read and which tiles they do.
+double networkMilliseconds(const HairFrame& frame)
+{
+    double sum = 0.0;
+    for (const PassTiming& timing : frame.timings)
+        for (const char* start : {"enc", "dec", "out", "unet", "hair network", "hair touched"})
+            sum += timing.pass.starts_with(start) ? timing.milliseconds : 0.0;
     return sum;
 }
 
@@ -66,17 +128,21 @@ CpuImage strip(const std::vector<CpuImage>& pictures)
     return all;
 }
 
+std::uint32_t truthSamples(const HairBench& o)
+{
+    return o.samples > 0 ? o.samples : o.common.quick ? 256 : 1024;
+}
+
 class CaseBench
 {
 public:
-    CaseBench(Context& context, const HairBench& options, HairNetwork* network,
+    CaseBench(Context& context, const HairBench& options, std::vector<NamedNetwork>& networks,
               const HairStudyCase& subject)
-        : context_(context), options_(options), network_(network), subject_(subject)
+        : context_(context), options_(options), networks_(networks), subject_(subject)
     {
         settings_.width = options.common.quick ? 320 : 640;
         settings_.height = options.common.quick ? 192 : 384;
         settings_.lod = 1;
-        settings_.network = network;
         if (subject.onHead)
             head_ = headScene();
     }
@@ -85,16 +151,18 @@ public:
     {
         HairRenderSettings settings = settings_;
         settings.mode = HairMode::Reference;
-        settings.frames = options_.common.quick ? 64 : 256;
-        const HairFrame truth = render(settings);
+        settings.frames = truthSamples(options_) / 4;
+        const HairFrame truth =
+            hairTruth(context_, subject_.hair, head_ ? &*head_ : nullptr, subject_.camera, settings,
+                      options_.keep ? cacheFolder() : std::filesystem::path());
         std::vector<CpuImage> pictures;
         double base = 0.0;
-        for (const Method& method : methodsOf(options_.common.quick, network_ != nullptr)) {
+        for (const Method& method : methodsOf(options_.common.quick, networks_)) {
             throwIfInterrupted();
             const HairFrame frame = render(settingsOf(method));
             const HairError error = compareHair(frame, truth);
             base = pictures.empty() ? error.picture.rmse : base;
-            if (pictures.empty() || method.filter == HairFilter::UNet)
+            if (pictures.empty() || (method.filter == HairFilter::UNet && pictures.size() == 1))
                 pictures.push_back(frame.radiance);
             report.add({{"name", subject_.name + " " + method.name},
                         {"rmse", error.picture.rmse},
@@ -106,7 +174,10 @@ public:
                         {"flicker", flickerOf(method, frame)},
                         {"ms", millisecondsOf(frame, "")},
                         {"ms_shadow", millisecondsOf(frame, "shadow")},
-                        {"ms_strands", millisecondsOf(frame, "hair strands")}});
+                        {"ms_strands", millisecondsOf(frame, "hair strands")},
+                        {"ms_coverage", millisecondsOf(frame, "exact coverage")},
+                        {"ms_network", networkMilliseconds(frame)},
+                        {"ms_composite", millisecondsOf(frame, "composite")}});
         }
         pictures.push_back(truth.radiance);
         if (!options_.out.empty())
@@ -119,6 +190,9 @@ private:
         HairRenderSettings settings = settings_;
         settings.filter = method.filter;
         settings.frames = method.frames;
+        settings.network = method.network;
+        settings.lod = method.lod;
+        settings.skipTiles = method.skipTiles;
         return settings;
     }
 
@@ -139,7 +213,7 @@ private:
 
     Context& context_;
     const HairBench& options_;
-    HairNetwork* network_;
+    std::vector<NamedNetwork>& networks_;
     const HairStudyCase& subject_;
     HairRenderSettings settings_;
     std::optional<Scene> head_;
@@ -147,19 +221,18 @@ private:
 
 int benchHair(const HairBench& o)
 {
+    if (truthSamples(o) % 4 != 0)
+        throw Error("--spp: " + std::to_string(o.samples) + " is not a multiple of 4");
     Context context = openDevice(o.common.device);
     BenchReport report("bench hair", o.common, context);
-    std::optional<HairNetwork> network;
-    if (!o.weights.empty())
-        network = loadHairNetwork(context, o.weights);
-    else if (!builtinHairWeights().empty())
-        network = builtinHairNetwork(context);
+    report.about()["settings"]["truth_samples"] = truthSamples(o);
+    std::vector<NamedNetwork> networks = openNetworks(context, o.weights);
     const std::vector<HairStudyCase> cases = heldOutHair(o.mohawk, o.common.quick ? 4000 : 0);
     Progress progress("bench hair", cases.size());
     for (std::size_t i = 0; i < cases.size(); ++i) {
         progress.update(i);
         if (report.wants(cases[i].name))
-            CaseBench(context, o, network ? &*network : nullptr, cases[i]).run(report);
+            CaseBench(context, o, networks, cases[i]).run(report);
     }
     progress.update(cases.size());
     report.finish();
@@ -181,8 +254,13 @@ Command addBenchHair(CLI::App& bench)
     const auto o = std::make_shared<HairBench>();
     o->mohawk = mohawkFile();
     addBenchOptions(*app, o->common);
-    app->add_option("--weights", o->weights, "Of the network; default: those built in")
+    app->add_option("--weights", o->weights,
+                    "Of a network, more than once for several widths; default: those built in")
         ->type_name("FILE");
+    app->add_option("--spp", o->samples, "Of the truth, a multiple of 4; default: 1024, quick 256")
+        ->type_name("N")
+        ->check(CLI::Range(4u, 1u << 14));
+    app->add_flag("!--no-cache", o->keep, "Draw truths anew and keep none");
     app->add_option("--out", o->out, "Folder for strips: 4 averaged, network, truth")
         ->type_name("DIR")
         ->check(CLI::ExistingDirectory);
