@@ -1,4 +1,5 @@
 #include "compute_nn/activation.hpp"
+#include "compute_nn/tensor_parts.hpp"
 
 #include <algorithm>
 #include <string>
@@ -27,16 +28,40 @@ glm::uvec3 elementThreads(const gpu::ElementPush& push, std::uint32_t images)
     return {std::min(push.channelPixels, kRow), images, (push.channelPixels + kRow - 1) / kRow};
 }
 
+// Calls add(part) -> version for images and channels that all of the tensors can bind.
+template <class Add>
+TensorId addByParts(RenderGraph& graph, std::string_view name, const TensorId& in,
+                    const TensorId& saved, TensorId out, Add add)
+{
+    if (fitBindings(graph, {in, saved, out}))
+        return out.as(add(in, saved, out));
+    const std::uint32_t images = imagesPerPart(graph, {in, saved, out});
+    for (std::uint32_t n = 0; n < out.desc.n; n += images) {
+        const std::uint32_t count = std::min(images, out.desc.n - n);
+        const std::uint32_t channels = count == 1 ? channelsPerPart(graph, name, out) : out.desc.c;
+        for (std::uint32_t c = 0; c < out.desc.c; c += channels) {
+            const auto part = [&](const TensorId& t) {
+                return boundPart(t, n, count, c, std::min(channels, out.desc.c - c));
+            };
+            out = out.as(add(part(in), part(saved), part(out)));
+        }
+    }
+    return out;
+}
+
 TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t kind, float slope,
                         const TensorId& x, const TensorId& y)
 {
-    PassBuilder pass = graph.addComputePass(name);
-    const BufferId from = pass.read(x.buffer);
-    const BufferId to = pass.write(y.buffer);
-    const gpu::ElementPush push = elementPush(x, y, x, slope);
-    pass.dispatch(kernels::activation, elementThreads(push, y.desc.n), push, {from, from, to},
-                  {kind, 0});
-    return y.as(to);
+    return addByParts(graph, name, x, x, y,
+                      [&](const TensorId& in, const TensorId&, const TensorId& out) {
+                          PassBuilder pass = graph.addComputePass(name);
+                          const Binding from = in.binding(pass.read(in.buffer));
+                          const BufferId to = pass.write(out.buffer);
+                          const gpu::ElementPush push = elementPush(in, out, in, slope);
+                          pass.dispatch(kernels::activation, elementThreads(push, out.desc.n), push,
+                                        {from, from, out.binding(to)}, {kind, 0});
+                          return to;
+                      });
 }
 
 } // namespace
@@ -66,14 +91,18 @@ TensorId activationForward(RenderGraph& graph, std::string_view name, const Acti
 TensorId activationBackward(RenderGraph& graph, std::string_view name, const Activation& activation,
                             const TensorId& y, const TensorId& dY, const TensorId& dX)
 {
-    PassBuilder pass = graph.addComputePass(name);
-    const BufferId from = pass.read(dY.buffer);
-    const BufferId saved = pass.read(y.buffer);
-    const BufferId to = pass.write(dX.buffer);
-    const gpu::ElementPush push = elementPush(dY, dX, y, activation.slope);
-    pass.dispatch(kernels::activation, elementThreads(push, y.desc.n), push, {from, saved, to},
-                  {std::uint32_t(activation.kind), 1});
-    return dX.as(to);
+    return addByParts(
+        graph, name, dY, y, dX,
+        [&](const TensorId& in, const TensorId& saved, const TensorId& out) {
+            PassBuilder pass = graph.addComputePass(name);
+            const Binding from = in.binding(pass.read(in.buffer));
+            const Binding value = saved.binding(pass.read(saved.buffer));
+            const BufferId to = pass.write(out.buffer);
+            const gpu::ElementPush push = elementPush(in, out, saved, activation.slope);
+            pass.dispatch(kernels::activation, elementThreads(push, out.desc.n), push,
+                          {from, value, out.binding(to)}, {std::uint32_t(activation.kind), 1});
+            return to;
+        });
 }
 
 TensorId log1pForward(RenderGraph& graph, std::string_view name, const TensorId& x,

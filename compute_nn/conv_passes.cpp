@@ -6,6 +6,7 @@
 #include "compute_nn/conv_rows.hpp"
 #include "compute_nn/conv_tiles.hpp"
 #include "compute_nn/conv_work.hpp"
+#include "compute_nn/tensor_parts.hpp"
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
 #include "kernels/nn.gen.hpp"
@@ -31,7 +32,7 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
         result.desc.n * divideUp(result.desc.h, phases.h) * divideUp(result.desc.w, phases.w);
 
     PassBuilder pass = graph.addComputePass(name);
-    const BufferId from = pass.read(source.buffer);
+    const Binding from = source.binding(pass.read(source.buffer));
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
     const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
@@ -67,16 +68,15 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
         const std::uint32_t threads = divideUp(push.endPixel - first, tile) * kConvLanes;
         pass.dispatch(kernels::conv,
                       {threads, divideUp(result.desc.c, channelTile), phases.h * phases.w}, push,
-                      {from, parameters, epilogue.saved, to},
+                      {from, parameters, epilogue.saved, result.binding(to)},
                       {channelTile, kPixelTile, turn, epilogue.flags});
     }
     return result.as(to);
 }
 
-} // namespace
-
-TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
-                     const TensorId& source, const LayerWeights& weights, const TensorId& result)
+TensorId addBoundConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
+                          const TensorId& source, const LayerWeights& weights,
+                          const TensorId& result)
 {
     STRANDLIGHT_ASSERT_EQ(source.desc.n, result.desc.n);
     const std::uint32_t scale = conv.transposed ? conv.stride.w : 1;
@@ -94,6 +94,59 @@ TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& 
                     std::to_string(conv.kernel.w) + ", stride " + std::to_string(conv.stride.w) +
                     ", has no form for tiles");
     return addGatherConvPass(graph, name, conv, source, weights, result);
+}
+
+// Images [first, first + count): of one alone, ranges of its channels. Sums over ranges of input
+// channels accumulate: bias with the first, activation with the last.
+TensorId addConvPassOfImages(RenderGraph& graph, std::string_view name, const ConvPass& conv,
+                             const TensorId& source, const LayerWeights& weights, TensorId result,
+                             std::uint32_t first, std::uint32_t count)
+{
+    const bool alone = count == 1;
+    const std::uint32_t in = alone ? channelsPerPart(graph, name, source) : source.desc.c;
+    std::uint32_t out = alone ? channelsPerPart(graph, name, result) : result.desc.c;
+    const std::optional<TensorId>& activated = conv.backward.activated;
+    if (alone && activated)
+        out = std::min(out, channelsPerPart(graph, name, *activated));
+    for (std::uint32_t o = 0; o < result.desc.c; o += out)
+        for (std::uint32_t i = 0; i < source.desc.c; i += in) {
+            const std::uint32_t outs = std::min(out, result.desc.c - o);
+            const std::uint32_t ins = std::min(in, source.desc.c - i);
+            const bool last = i + ins == source.desc.c;
+            ConvPass part = conv;
+            part.bias = conv.bias && i == 0;
+            part.slope = last ? conv.slope : 1.0f;
+            part.backward.accumulate = conv.backward.accumulate || i > 0;
+            part.backward.activated.reset();
+            if (last && activated)
+                part.backward.activated = boundPart(*activated, first, count, o, outs);
+            LayerWeights range = weights;
+            range.weightOffset += o * conv.weightStrideOut + i * conv.weightStrideIn;
+            range.biasOffset += o;
+            result = result.as(addBoundConvPass(graph, name, part,
+                                                boundPart(source, first, count, i, ins), range,
+                                                boundPart(result, first, count, o, outs))
+                                   .buffer);
+        }
+    return result;
+}
+
+} // namespace
+
+TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
+                     const TensorId& source, const LayerWeights& weights, const TensorId& result)
+{
+    const TensorId& saved = conv.backward.activated ? *conv.backward.activated : result;
+    if (fitBindings(graph, {source, result, saved}))
+        return addBoundConvPass(graph, name, conv, source, weights, result);
+    if (conv.tiles)
+        throw Error(std::string(name) + ": tiles of a tensor that is larger than one binding");
+    const std::uint32_t images = imagesPerPart(graph, {source, result, saved});
+    TensorId to = result;
+    for (std::uint32_t n = 0; n < result.desc.n; n += images)
+        to = addConvPassOfImages(graph, name, conv, source, weights, to, n,
+                                 std::min(images, result.desc.n - n));
+    return to;
 }
 
 } // namespace strandlight

@@ -32,7 +32,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
                                     channels * tile.columns; // of one strip
 
     PassBuilder pass = graph.addComputePass(name);
-    const BufferId from = pass.read(source.buffer);
+    const Binding from = source.binding(pass.read(source.buffer));
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
     const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
@@ -76,7 +76,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
             pass.dispatchIndirect(
                 kernel, conv.tiles->arguments,
                 tileArguments(kGroup / stripsPerTile, std::min(slice, blocks - first)), push,
-                {from, parameters, epilogue.saved, tiles, to}, constants);
+                {from, parameters, epilogue.saved, tiles, result.binding(to)}, constants);
         }
         return result.as(to);
     }
@@ -87,7 +87,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
         push.firstStrip = first;
         push.endStrip = std::min(strips, first + slice);
         pass.dispatch(kernel, {push.endStrip - first, blocks, 1}, push,
-                      {from, parameters, epilogue.saved, from, to}, constants);
+                      {from, parameters, epilogue.saved, from, result.binding(to)}, constants);
     }
     return result.as(to);
 }

@@ -3,6 +3,7 @@
 
 #include "compute_nn/conv_passes.hpp"
 #include "compute_nn/conv_work.hpp"
+#include "compute_nn/tensor_parts.hpp"
 #include "engine/base/assert.hpp"
 #include "kernels/nn.gen.hpp"
 
@@ -13,11 +14,9 @@ namespace {
 // A x 8 channels and B columns of conv_backward_weight.comp.
 constexpr std::uint32_t kColumnTile = 32;
 
-} // namespace
-
-BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
-                            Extent2 stride, Extent2 padding, const TensorId& small,
-                            const TensorId& large, const LayerWeights& gradient)
+BufferId addBoundCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
+                                 Extent2 stride, Extent2 padding, const TensorId& small,
+                                 const TensorId& large, const LayerWeights& gradient)
 {
     STRANDLIGHT_ASSERT_EQ(small.desc.n, large.desc.n);
     const std::uint32_t columns = large.desc.c * kernel.h * kernel.w;
@@ -30,15 +29,18 @@ BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 k
 
     // Enough strips to fill the threads, short enough for the trip budget, few enough to keep the
     // strips small.
-    const std::uint32_t wanted = std::max(divideUp(256, tilesA * tilesB), divideUp(pixels, 16384));
+    const std::uint64_t bindable = graph.context().maxTensorBindingBytes() / (elements * 4ull);
+    const std::uint32_t wanted = std::uint32_t(
+        std::clamp<std::uint64_t>(std::max(divideUp(256, tilesA * tilesB), divideUp(pixels, 16384)),
+                                  1, std::max<std::uint64_t>(bindable, 1)));
     const std::uint32_t stripPixels = std::max(divideUp(pixels, wanted), 16u);
     const std::uint32_t strips = divideUp(pixels, stripPixels);
     checkTripBudget("conv_backward_weight", stripPixels / 2 + 1);
     checkTripBudget("strip_sum", strips);
 
     PassBuilder pass = graph.addComputePass(name);
-    const BufferId a = pass.read(small.buffer);
-    const BufferId b = pass.read(large.buffer);
+    const Binding a = small.binding(pass.read(small.buffer));
+    const Binding b = large.binding(pass.read(large.buffer));
     const BufferId sums = pass.write(
         graph.createBuffer(std::string(name) + " strips", std::uint64_t(strips) * elements * 4));
     const BufferId to = pass.write(gradient.block);
@@ -68,8 +70,8 @@ BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 k
     return to;
 }
 
-BufferId addChannelSumPass(RenderGraph& graph, std::string_view name, const TensorId& dY,
-                           const LayerWeights& gradient)
+BufferId addBoundChannelSumPass(RenderGraph& graph, std::string_view name, const TensorId& dY,
+                                const LayerWeights& gradient)
 {
     const std::uint32_t pixels = dY.desc.n * dY.desc.pixels();
     const std::uint32_t stripPixels = std::max(divideUp(pixels, 512), 16u);
@@ -77,7 +79,7 @@ BufferId addChannelSumPass(RenderGraph& graph, std::string_view name, const Tens
     checkTripBudget("channel_sum", stripPixels);
 
     PassBuilder pass = graph.addComputePass(name);
-    const BufferId from = pass.read(dY.buffer);
+    const Binding from = dY.binding(pass.read(dY.buffer));
     const BufferId sums = pass.write(
         graph.createBuffer(std::string(name) + " strips", std::uint64_t(strips) * dY.desc.c * 4));
     const BufferId to = pass.write(gradient.block);
@@ -86,6 +88,55 @@ BufferId addChannelSumPass(RenderGraph& graph, std::string_view name, const Tens
     const gpu::ReducePush reduce{dY.desc.c, strips, gradient.biasOffset};
     pass.dispatch(kernels::strip_sum, {dY.desc.c, 1, 1}, reduce, {sums, to});
     return to;
+}
+
+} // namespace
+
+// Parts add to the same gradient: images, and of one image ranges of channels. The small tensor's
+// are rows of the gradient; a range of the large one's is part of a row, so rows come singly then.
+BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
+                            Extent2 stride, Extent2 padding, const TensorId& small,
+                            const TensorId& large, const LayerWeights& gradient)
+{
+    LayerWeights to = gradient;
+    if (fitBindings(graph, {small, large}))
+        return addBoundCorrelationPass(graph, name, kernel, stride, padding, small, large, to);
+    const std::uint32_t images = imagesPerPart(graph, {small, large});
+    const std::uint32_t columns = images == 1 ? channelsPerPart(graph, name, large) : large.desc.c;
+    const std::uint32_t rows = columns < large.desc.c ? 1
+                               : images == 1          ? channelsPerPart(graph, name, small)
+                                                      : small.desc.c;
+    const std::uint32_t taps = kernel.h * kernel.w;
+    for (std::uint32_t n = 0; n < small.desc.n; n += images)
+        for (std::uint32_t a = 0; a < small.desc.c; a += rows)
+            for (std::uint32_t b = 0; b < large.desc.c; b += columns) {
+                const std::uint32_t count = std::min(images, small.desc.n - n);
+                to.weightOffset = gradient.weightOffset + (a * large.desc.c + b) * taps;
+                to.block = addBoundCorrelationPass(
+                    graph, name, kernel, stride, padding,
+                    boundPart(small, n, count, a, std::min(rows, small.desc.c - a)),
+                    boundPart(large, n, count, b, std::min(columns, large.desc.c - b)), to);
+            }
+    return to.block;
+}
+
+BufferId addChannelSumPass(RenderGraph& graph, std::string_view name, const TensorId& dY,
+                           const LayerWeights& gradient)
+{
+    LayerWeights to = gradient;
+    if (fitBindings(graph, {dY}))
+        return addBoundChannelSumPass(graph, name, dY, to);
+    const std::uint32_t images = imagesPerPart(graph, {dY});
+    const std::uint32_t channels = images == 1 ? channelsPerPart(graph, name, dY) : dY.desc.c;
+    for (std::uint32_t n = 0; n < dY.desc.n; n += images)
+        for (std::uint32_t c = 0; c < dY.desc.c; c += channels) {
+            to.biasOffset = gradient.biasOffset + c;
+            to.block = addBoundChannelSumPass(graph, name,
+                                              boundPart(dY, n, std::min(images, dY.desc.n - n), c,
+                                                        std::min(channels, dY.desc.c - c)),
+                                              to);
+        }
+    return to.block;
 }
 
 } // namespace strandlight

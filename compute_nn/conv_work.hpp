@@ -38,21 +38,21 @@ inline std::uint32_t shuffleFlag(const RenderGraph& graph)
 // What a convolution kernel does besides the sum, as it binds and specialises it.
 struct ConvEpilogue
 {
-    BufferId saved; // the activated values; without them the source, which nothing reads
+    Binding saved; // the activated values; without them the source, which nothing reads
     gpu::TensorView savedView{};
     std::uint32_t flags = 0;
     float slope = 1.0f;
 };
 
 inline ConvEpilogue bindEpilogue(const RenderGraph& graph, PassBuilder& pass, const ConvPass& conv,
-                                 BufferId source)
+                                 const Binding& source)
 {
     const BackwardEpilogue& backward = conv.backward;
     ConvEpilogue epilogue{.saved = source, .slope = conv.slope};
     epilogue.flags = (conv.bias ? gpu::kConvBias : 0) |
                      (backward.accumulate ? gpu::kConvAccumulate : 0) | shuffleFlag(graph);
     if (backward.activated) {
-        epilogue.saved = pass.read(backward.activated->buffer);
+        epilogue.saved = backward.activated->binding(pass.read(backward.activated->buffer));
         epilogue.savedView = backward.activated->view();
         epilogue.flags |= gpu::kConvDerivative;
         epilogue.slope = backward.slope;

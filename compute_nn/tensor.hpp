@@ -18,11 +18,20 @@ struct TensorId
     TensorDesc desc;                  // of the range
     std::uint32_t firstChannel = 0;   // in the buffer
     std::uint32_t bufferChannels = 1; // of the whole buffer
+    std::uint32_t firstImage = 0;     // in the buffer
+    std::uint64_t boundFrom = 0;      // what is bound of the buffer: bytes from here on,
+    std::uint64_t boundBytes = 0;     // so many; 0: all (tensor_parts.hpp)
 
-    bool whole() const { return firstChannel == 0 && bufferChannels == desc.c; }
+    bool whole() const { return firstImage == 0 && firstChannel == 0 && bufferChannels == desc.c; }
+    Binding binding(BufferId version) const { return {version, boundFrom, boundBytes}; }
+    std::uint64_t firstElement() const
+    {
+        return (std::uint64_t(firstImage) * bufferChannels + firstChannel) * desc.pixels();
+    }
     gpu::TensorView view() const
     {
-        return {firstChannel * desc.pixels(), bufferChannels * desc.pixels(), desc.h, desc.w};
+        return {std::uint32_t(firstElement() - boundFrom / sizeof(float)),
+                bufferChannels * desc.pixels(), desc.h, desc.w};
     }
     // The same tensor after a pass has written it.
     TensorId as(BufferId version) const

@@ -93,7 +93,7 @@ void DescriptorWrites::add(const ReflectedBinding& slot, const Binding& binding)
     write.dstBinding = slot.binding;
     write.descriptorCount = 1;
     if (wantsBuffer) {
-        addBuffer(slot, *graph_.resources->buffer(resource), write);
+        addBuffer(slot, *graph_.resources->buffer(resource), binding, write);
     } else {
         const bool sampled = slot.kind == BindingKind::SampledImage;
         PipelineStore& pipelines = *graph_.context->vulkan().pipelines;
@@ -107,26 +107,33 @@ void DescriptorWrites::add(const ReflectedBinding& slot, const Binding& binding)
 }
 
 void DescriptorWrites::addBuffer(const ReflectedBinding& slot, BufferState& buffer,
-                                 VkWriteDescriptorSet& write)
+                                 const Binding& binding, VkWriteDescriptorSet& write)
 {
     const VkPhysicalDeviceLimits& limits = graph_.context->vulkan().properties.limits;
+    if (binding.offset % Binding::kAlignment != 0 || binding.offset > buffer.bytes ||
+        binding.bytes > buffer.bytes - binding.offset)
+        throw GraphError(where_ + ": bytes " + std::to_string(binding.offset) + " and " +
+                         std::to_string(binding.bytes) + " more of '" + buffer.name +
+                         "' are out of line or beyond its " + std::to_string(buffer.bytes));
+    const std::uint64_t bytes = binding.bytes ? binding.bytes : buffer.bytes - binding.offset;
     const auto checkLimit = [&](std::uint64_t limit) {
-        if (buffer.bytes > limit)
-            throw GraphError(where_ + ": '" + buffer.name + "' has " +
-                             std::to_string(buffer.bytes) + " bytes, one " + toString(slot.kind) +
-                             " may have " + std::to_string(limit));
+        if (bytes > limit)
+            throw GraphError(where_ + ": '" + buffer.name + "' has " + std::to_string(bytes) +
+                             " bytes, one " + toString(slot.kind) + " may have " +
+                             std::to_string(limit));
     };
     if (slot.kind == BindingKind::StorageBuffer) {
         checkLimit(limits.maxStorageBufferRange);
         write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        write.pBufferInfo =
-            &buffers_.emplace_back(VkDescriptorBufferInfo{buffer.handle, 0, VK_WHOLE_SIZE});
+        write.pBufferInfo = &buffers_.emplace_back(VkDescriptorBufferInfo{
+            buffer.handle, binding.offset, binding.bytes ? binding.bytes : VK_WHOLE_SIZE});
         return;
     }
     const TexelFormat texel = texelFormat(slot.imageFormat, where_);
     checkLimit(std::uint64_t(limits.maxTexelBufferElements) * texel.bytes);
     write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-    write.pTexelBufferView = &views_.emplace_back(buffer.view(texel.format));
+    write.pTexelBufferView =
+        &views_.emplace_back(buffer.view(texel.format, binding.offset, binding.bytes));
 }
 
 } // namespace strandlight

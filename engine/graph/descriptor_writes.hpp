@@ -26,7 +26,8 @@ public:
 private:
     Usage declaredUsage(std::uint32_t resource) const;
     void add(const ReflectedBinding& slot, const Binding& binding);
-    void addBuffer(const ReflectedBinding& slot, BufferState& buffer, VkWriteDescriptorSet& write);
+    void addBuffer(const ReflectedBinding& slot, BufferState& buffer, const Binding& binding,
+                   VkWriteDescriptorSet& write);
 
     RenderGraph::State& graph_;
     const PassDescription& pass_;

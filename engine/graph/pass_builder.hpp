@@ -35,8 +35,16 @@ struct Binding
 {
     std::variant<BufferId, ImageId> resource;
     Filter filter = Filter::Linear; // sampled images only
+    std::uint64_t offset = 0;       // of buffers; bytes, a multiple of kAlignment
+    std::uint64_t bytes = 0;        // of buffers; 0: to the end
+
+    static constexpr std::uint64_t kAlignment = 256; // the most that a device may ask for
 
     Binding(BufferId id) : resource(id) {}
+    Binding(BufferId id, std::uint64_t from, std::uint64_t size)
+        : resource(id), offset(from), bytes(size)
+    {
+    }
     Binding(ImageId id, Filter f = Filter::Linear) : resource(id), filter(f) {}
 };
 

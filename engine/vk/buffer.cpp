@@ -26,20 +26,21 @@ Staging::Staging(VulkanState& vulkan, std::uint64_t bytes)
 
 BufferState::~BufferState()
 {
-    for (const auto& [format, view] : views)
+    for (const auto& [range, view] : views)
         vkDestroyBufferView(vulkan->device, view, nullptr);
     if (handle)
         vkDestroyBuffer(vulkan->device, handle, nullptr);
 }
 
-VkBufferView BufferState::view(VkFormat format)
+VkBufferView BufferState::view(VkFormat format, std::uint64_t offset, std::uint64_t size)
 {
-    VkBufferView& view = views[format];
+    VkBufferView& view = views[{format, offset, size}];
     if (!view) {
         VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
         info.buffer = handle;
         info.format = format;
-        info.range = VK_WHOLE_SIZE;
+        info.offset = offset;
+        info.range = size ? size : VK_WHOLE_SIZE;
         check(vkCreateBufferView(vulkan->device, &info, nullptr, &view), "vkCreateBufferView");
     }
     return view;

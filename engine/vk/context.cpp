@@ -1,5 +1,6 @@
 #include "engine/vk/context.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -118,6 +119,10 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
     VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &v11};
     vkGetPhysicalDeviceProperties2(state.physical, &properties);
     state.properties = properties.properties;
+    if (settings.bindingBytes != 0) {
+        state.properties.limits.maxStorageBufferRange = std::uint32_t(settings.bindingBytes);
+        state.properties.limits.maxTexelBufferElements = std::uint32_t(settings.bindingBytes / 4);
+    }
     state.subgroupSize = settings.subgroups ? v11.subgroupSize : 1;
 
     const float priority = 1.0f;
@@ -189,6 +194,11 @@ std::uint32_t Context::subgroupSize() const
 std::uint64_t Context::maxStorageBufferBytes() const
 {
     return state_->properties.limits.maxStorageBufferRange;
+}
+std::uint64_t Context::maxTensorBindingBytes() const
+{
+    const std::uint64_t elements = state_->properties.limits.maxTexelBufferElements;
+    return std::min<std::uint64_t>(maxStorageBufferBytes(), elements * sizeof(float));
 }
 std::uint64_t Context::bytesAllocated() const
 {

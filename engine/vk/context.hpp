@@ -24,6 +24,7 @@ struct ContextSettings
     bool validation = false;        // core and synchronization; a message makes the submit throw
     bool pipelineCache = true;      // on disk, $XDG_CACHE_HOME/strandlight
     std::uint64_t memoryBudget = 0; // bytes; 0: 80 % of the device's heap
+    std::uint64_t bindingBytes = 0; // most that one binding may have; 0: what the device allows
     bool subgroups = true;          // false: kernels take the forms that need no subgroup
 };
 
@@ -42,6 +43,8 @@ public:
     const DeviceInfo& device() const;
     std::uint32_t subgroupSize() const;
     std::uint64_t maxStorageBufferBytes() const; // range limit of one binding (128 MiB on lavapipe)
+    // The most that can be bound both as a storage and as a texel buffer of floats, as tensors are.
+    std::uint64_t maxTensorBindingBytes() const;
     std::uint64_t bytesAllocated() const;
     std::uint64_t peakBytesAllocated() const;
     std::uint32_t pipelinesCreated() const;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <volk.h>
@@ -19,15 +20,15 @@ struct VulkanState;
 struct BufferState
 {
     ~BufferState();
-    // View as a texel buffer; made on first use.
-    VkBufferView view(VkFormat format);
+    // View as a texel buffer, of `size` bytes from `offset` (0: to the end); made on first use.
+    VkBufferView view(VkFormat format, std::uint64_t offset, std::uint64_t size);
 
     VulkanState* vulkan = nullptr;
     std::string name;
     std::uint64_t bytes = 0;
     VkBuffer handle = VK_NULL_HANDLE;
     Allocation memory;
-    std::map<VkFormat, VkBufferView> views;
+    std::map<std::tuple<VkFormat, std::uint64_t, std::uint64_t>, VkBufferView> views;
 };
 
 struct ImageState

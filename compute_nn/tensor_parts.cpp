@@ -1,0 +1,59 @@
+#include "compute_nn/tensor_parts.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "engine/base/error.hpp"
+
+namespace strandlight {
+
+namespace {
+
+// A part may begin anywhere, its binding only at multiples of the alignment.
+std::uint64_t roomOf(const RenderGraph& graph)
+{
+    return graph.context().maxTensorBindingBytes() - Binding::kAlignment;
+}
+
+} // namespace
+
+bool fitBindings(const RenderGraph& graph, std::initializer_list<TensorId> tensors)
+{
+    return std::all_of(tensors.begin(), tensors.end(), [&](const TensorId& t) {
+        return t.boundBytes != 0 ||
+               graph.desc(t.buffer).bytes <= graph.context().maxTensorBindingBytes();
+    });
+}
+
+TensorId boundPart(const TensorId& tensor, std::uint32_t firstImage, std::uint32_t images,
+                   std::uint32_t firstChannel, std::uint32_t channels)
+{
+    TensorId part = channelRange(tensor, firstChannel, channels);
+    part.firstImage += firstImage;
+    part.desc.n = images;
+    const std::uint64_t planes = std::uint64_t(images - 1) * part.bufferChannels + channels;
+    const std::uint64_t from = part.firstElement() * sizeof(float);
+    part.boundFrom = from / Binding::kAlignment * Binding::kAlignment;
+    part.boundBytes = from + planes * part.desc.pixels() * sizeof(float) - part.boundFrom;
+    return part;
+}
+
+std::uint32_t imagesPerPart(const RenderGraph& graph, std::initializer_list<TensorId> tensors)
+{
+    std::uint64_t images = ~0u;
+    for (const TensorId& t : tensors)
+        images = std::min<std::uint64_t>(images, roomOf(graph) / (t.view().imageStride * 4ull));
+    return std::uint32_t(std::max<std::uint64_t>(images, 1));
+}
+
+std::uint32_t channelsPerPart(const RenderGraph& graph, std::string_view pass,
+                              const TensorId& tensor)
+{
+    const std::uint64_t planes = roomOf(graph) / (tensor.desc.pixels() * sizeof(float));
+    if (planes == 0)
+        throw Error(std::string(pass) + ": one plane of " + shapeText(tensor.desc) +
+                    " is larger than the device can bind");
+    return std::uint32_t(std::min<std::uint64_t>(planes, tensor.desc.c));
+}
+
+} // namespace strandlight
