@@ -3,6 +3,7 @@
 #include <string>
 
 #include "compute_nn/activation.hpp"
+#include "compute_nn/conv_weight_forms.hpp"
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
 
@@ -67,7 +68,7 @@ BufferId conv2dBackwardWeight(RenderGraph& graph, std::string_view name, const C
 {
     checkShapes(name, desc, x.desc, dY.desc);
     LayerWeights to = gradient;
-    to.block = addCorrelationPass(graph, name, desc.kernel, desc.stride, desc.padding, dY, x, to);
+    to.block = addCorrelationPass(graph, name, {desc.kernel, desc.stride, desc.padding, dY, x}, to);
     if (to.hasBias)
         to.block = addChannelSumPass(graph, std::string(name) + " bias", dY, to);
     return to.block;

@@ -83,7 +83,7 @@ TensorId addBoundConvPass(RenderGraph& graph, std::string_view name, const ConvP
     // A transposed kernel that its padding covers has taps beyond any window.
     const bool windowed =
         !conv.transposed || (conv.padding.h < conv.kernel.h && conv.padding.w < conv.kernel.w);
-    const RowTile* tile = windowed ? findRowTile(graph.context().device().type,
+    const RowTile* tile = windowed ? findRowTile(graph.context().cpuForms(),
                                                  {conv.transposed, conv.kernel, conv.stride},
                                                  divideUp(result.desc.w, scale), result.desc.n)
                                    : nullptr;

@@ -11,6 +11,7 @@
 
 namespace strandlight {
 
+struct Correlation;
 struct TileList;
 
 // Weights, bias or their gradients inside a block of floats.
@@ -49,10 +50,8 @@ struct ConvPass
 TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
                      const TensorId& source, const LayerWeights& weights, const TensorId& result);
 
-// weight gradient[a,b,ky,kx] += sum small[n,a,y,x] large[n,b, y sh - ph + ky, x sw - pw + kx]
-BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
-                            Extent2 stride, Extent2 padding, const TensorId& small,
-                            const TensorId& large, const LayerWeights& gradient);
+BufferId addCorrelationPass(RenderGraph& graph, std::string_view name,
+                            const Correlation& correlation, const LayerWeights& gradient);
 
 // bias gradient[c] += sum over n,y,x of dY[n,c,y,x]
 BufferId addChannelSumPass(RenderGraph& graph, std::string_view name, const TensorId& dY,

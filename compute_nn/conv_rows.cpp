@@ -12,8 +12,7 @@ namespace strandlight {
 
 namespace {
 
-constexpr std::uint32_t kGroup = 64;         // strips of a workgroup
-constexpr std::uint32_t kMaxGroups = 65535u; // of any device, per axis
+constexpr std::uint32_t kGroup = 64; // strips of a workgroup
 
 } // namespace
 

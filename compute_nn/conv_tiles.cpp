@@ -49,10 +49,10 @@ static_assert(dividesTiles(kCpu) && dividesTiles(kGpu));
 
 } // namespace
 
-const RowTile* findRowTile(std::string_view deviceType, const RowShape& shape,
-                           std::uint32_t gridWidth, std::uint32_t images)
+const RowTile* findRowTile(bool cpu, const RowShape& shape, std::uint32_t gridWidth,
+                           std::uint32_t images)
 {
-    for (const Case& c : deviceType == "cpu" ? std::span<const Case>(kCpu) : kGpu)
+    for (const Case& c : cpu ? std::span<const Case>(kCpu) : kGpu)
         if (c.shape.transposed == shape.transposed && c.shape.kernel == shape.kernel &&
             c.shape.stride == shape.stride)
             return images == 1 || gridWidth >= c.minimumWidth ? &c.tile : nullptr;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "compute_nn/conv_desc.hpp"
 
@@ -23,10 +22,10 @@ struct RowShape
     Extent2 stride;
 };
 
-// Null: no row kernel pays, the gather (conv.comp) takes it. `deviceType` is DeviceInfo::type. One
+// Null: no row kernel pays, the gather (conv.comp) takes it. `cpu` is Context::cpuForms(). One
 // image never goes to the gather when the table has its shape, so that a list of tiles gives the
 // bits of the whole.
-const RowTile* findRowTile(std::string_view deviceType, const RowShape& shape,
-                           std::uint32_t gridWidth, std::uint32_t images);
+const RowTile* findRowTile(bool cpu, const RowShape& shape, std::uint32_t gridWidth,
+                           std::uint32_t images);
 
 } // namespace strandlight

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "compute_nn/conv_passes.hpp"
+#include "compute_nn/conv_weight_forms.hpp"
 #include "compute_nn/conv_work.hpp"
 #include "compute_nn/tensor_parts.hpp"
 #include "engine/base/assert.hpp"
@@ -11,82 +13,121 @@ namespace strandlight {
 
 namespace {
 
-// A x 8 channels and B columns of conv_backward_weight.comp.
-constexpr std::uint32_t kColumnTile = 32;
-
-BufferId addBoundCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
-                                 Extent2 stride, Extent2 padding, const TensorId& small,
-                                 const TensorId& large, const LayerWeights& gradient)
+// Strips of `count` floats each, as a pass writes them and then adds them up in their order.
+struct Strips
 {
-    STRANDLIGHT_ASSERT_EQ(small.desc.n, large.desc.n);
-    const std::uint32_t columns = large.desc.c * kernel.h * kernel.w;
-    const std::uint32_t elements = small.desc.c * columns;
-    const std::uint32_t pixels = small.desc.n * small.desc.pixels();
-    const std::uint32_t channelVectors = small.desc.c > kConvLanes ? 2 : 1;
-    const std::uint32_t columnTile = columns > 8 ? kColumnTile : 8;
-    const std::uint32_t tilesA = divideUp(small.desc.c, kConvLanes * channelVectors);
-    const std::uint32_t tilesB = divideUp(columns, columnTile);
+    BufferId buffer;
+    std::uint32_t count, stride, strips;
+};
 
-    // Enough strips to fill the threads, short enough for the trip budget, few enough to keep the
-    // strips small.
-    const std::uint64_t bindable = graph.context().maxTensorBindingBytes() / (elements * 4ull);
-    const std::uint32_t wanted = std::uint32_t(
-        std::clamp<std::uint64_t>(std::max(divideUp(256, tilesA * tilesB), divideUp(pixels, 16384)),
-                                  1, std::max<std::uint64_t>(bindable, 1)));
-    const std::uint32_t stripPixels = std::max(divideUp(pixels, wanted), 16u);
-    const std::uint32_t strips = divideUp(pixels, stripPixels);
-    checkTripBudget("conv_backward_weight", stripPixels / 2 + 1);
-    checkTripBudget("strip_sum", strips);
+Strips createStrips(RenderGraph& graph, PassBuilder& pass, std::string_view name,
+                    std::uint32_t count, std::uint32_t strips)
+{
+    const std::uint32_t stride = divideUp(count, 4) * 4; // whole quads
+    const BufferId buffer = pass.write(
+        graph.createBuffer(std::string(name) + " strips", std::uint64_t(strips) * stride * 4));
+    return {buffer, count, stride, strips};
+}
+
+// Strips of `count` floats that one binding holds, at least 1.
+std::uint32_t bindableStrips(const RenderGraph& graph, std::uint32_t count)
+{
+    const std::uint64_t bytes = std::uint64_t(divideUp(count, 4)) * 16;
+    return std::uint32_t(
+        std::clamp<std::uint64_t>(graph.context().maxTensorBindingBytes() / bytes, 1, kMaxGroups));
+}
+
+// Many strips are added in two stages, so that as many threads take part.
+constexpr std::uint32_t kStripsOfOneStage = 48;
+
+void addStrips(RenderGraph& graph, PassBuilder& pass, std::string_view name, Strips from,
+               BufferId to, std::uint32_t resultOffset)
+{
+    gpu::ReducePush push{from.count, from.stride, from.strips, from.strips, resultOffset, 1};
+    if (from.strips > kStripsOfOneStage) {
+        const std::uint32_t groups = std::uint32_t(std::ceil(std::sqrt(double(from.strips))));
+        push.groupStrips = divideUp(from.strips, groups);
+        push.resultOffset = 0;
+        push.accumulate = 0;
+        const std::string sums = std::string(name) + " sums";
+        const Strips partial =
+            createStrips(graph, pass, sums, from.count, divideUp(from.strips, push.groupStrips));
+        checkTripBudget("strip_sum", push.groupStrips);
+        pass.dispatch(kernels::strip_sum, {from.stride / 4, partial.strips, 1}, push,
+                      {from.buffer, partial.buffer});
+        from = partial;
+        push = {from.count, from.stride, from.strips, from.strips, resultOffset, 1};
+    }
+    checkTripBudget("strip_sum", push.groupStrips);
+    pass.dispatch(kernels::strip_sum, {from.stride / 4, 1, 1}, push, {from.buffer, to});
+}
+
+BufferId addBoundCorrelationPass(RenderGraph& graph, std::string_view name,
+                                 const Correlation& correlation, const LayerWeights& gradient)
+{
+    const TensorId& small = correlation.small;
+    const TensorId& large = correlation.large;
+    STRANDLIGHT_ASSERT_EQ(small.desc.n, large.desc.n);
+    const std::uint32_t elements =
+        small.desc.c * large.desc.c * correlation.kernel.h * correlation.kernel.w;
+    WeightForm form = weightForm(graph.context().cpuForms(), shuffleFlag(graph), correlation);
+    const std::uint32_t longer = divideUp(form.strips, bindableStrips(graph, elements));
+    form.stripLength *= longer;
+    form.stripWork *= longer;
+    form.strips = divideUp(form.strips, longer);
+    checkTripBudget(form.blob->name, std::uint64_t(form.stripLength) * form.unitTurns);
 
     PassBuilder pass = graph.addComputePass(name);
     const Binding a = small.binding(pass.read(small.buffer));
     const Binding b = large.binding(pass.read(large.buffer));
-    const BufferId sums = pass.write(
-        graph.createBuffer(std::string(name) + " strips", std::uint64_t(strips) * elements * 4));
+    const Strips strips = createStrips(graph, pass, name, elements, form.strips);
     const BufferId to = pass.write(gradient.block);
     gpu::ConvWeightPush push{.small = small.view(),
                              .large = large.view(),
                              .smallChannels = small.desc.c,
                              .largeChannels = large.desc.c,
-                             .kernelHeight = kernel.h,
-                             .kernelWidth = kernel.w,
-                             .strideHeight = stride.h,
-                             .strideWidth = stride.w,
-                             .paddingHeight = padding.h,
-                             .paddingWidth = padding.w,
-                             .pixels = pixels,
-                             .stripPixels = stripPixels,
-                             .firstStrip = 0};
-    const std::uint64_t workPerStrip =
-        std::uint64_t(stripPixels) * tilesA * tilesB * columnTile * kConvLanes * channelVectors;
+                             .kernelHeight = correlation.kernel.h,
+                             .kernelWidth = correlation.kernel.w,
+                             .strideHeight = correlation.stride.h,
+                             .strideWidth = correlation.stride.w,
+                             .paddingHeight = correlation.padding.h,
+                             .paddingWidth = correlation.padding.w,
+                             .pixels = small.desc.n * small.desc.pixels(),
+                             .stripLength = form.stripLength,
+                             .firstStrip = 0,
+                             .stripStride = strips.stride};
     const std::uint32_t slice =
-        std::uint32_t(std::max<std::uint64_t>(kDispatchWork / workPerStrip, 1));
-    for (; push.firstStrip < strips; push.firstStrip += slice)
-        pass.dispatch(kernels::conv_backward_weight,
-                      {std::min(slice, strips - push.firstStrip) * kConvLanes, tilesB, tilesA},
-                      push, {a, b, sums}, {channelVectors, columnTile, 2, shuffleFlag(graph)});
-    const gpu::ReducePush reduce{elements, strips, gradient.weightOffset};
-    pass.dispatch(kernels::strip_sum, {elements, 1, 1}, reduce, {sums, to});
+        std::uint32_t(std::clamp<std::uint64_t>(kDispatchWork / form.stripWork, 1, kMaxGroups));
+    for (; push.firstStrip < form.strips; push.firstStrip += slice)
+        pass.dispatch(*form.blob,
+                      {form.tilesB * form.groupSize, form.tilesA,
+                       std::min(slice, form.strips - push.firstStrip)},
+                      push, {a, b, strips.buffer}, form.constants);
+    addStrips(graph, pass, name, strips, to, gradient.weightOffset);
     return to;
 }
 
 BufferId addBoundChannelSumPass(RenderGraph& graph, std::string_view name, const TensorId& dY,
                                 const LayerWeights& gradient)
 {
-    const std::uint32_t pixels = dY.desc.n * dY.desc.pixels();
-    const std::uint32_t stripPixels = std::max(divideUp(pixels, 512), 16u);
-    const std::uint32_t strips = divideUp(pixels, stripPixels);
-    checkTripBudget("channel_sum", stripPixels);
+    const gpu::TensorView view = dY.view();
+    const bool quads =
+        dY.desc.pixels() % 4 == 0 && view.offset % 4 == 0 && view.imageStride % 4 == 0;
+    const std::uint32_t texels = dY.desc.n * dY.desc.pixels() / (quads ? 4 : 1);
+    // Whole workgroups, enough to fill a GPU with a few channels.
+    const std::uint32_t most = std::clamp(bindableStrips(graph, dY.desc.c) / 32 * 32, 32u, 2048u);
+    const std::uint32_t invocations =
+        std::min(divideUp(std::max(divideUp(texels, 64), 1u), 32) * 32, most);
+    checkTripBudget("channel_sum", divideUp(texels, invocations));
 
     PassBuilder pass = graph.addComputePass(name);
     const Binding from = dY.binding(pass.read(dY.buffer));
-    const BufferId sums = pass.write(
-        graph.createBuffer(std::string(name) + " strips", std::uint64_t(strips) * dY.desc.c * 4));
+    const Strips strips = createStrips(graph, pass, name, dY.desc.c, invocations);
     const BufferId to = pass.write(gradient.block);
-    const gpu::ChannelSumPush push{dY.view(), dY.desc.c, pixels, stripPixels};
-    pass.dispatch(kernels::channel_sum, {strips, dY.desc.c, 1}, push, {from, sums});
-    const gpu::ReducePush reduce{dY.desc.c, strips, gradient.biasOffset};
-    pass.dispatch(kernels::strip_sum, {dY.desc.c, 1, 1}, reduce, {sums, to});
+    const gpu::ChannelSumPush push{view, dY.desc.n, invocations, strips.stride};
+    pass.dispatch(kernels::channel_sum, {invocations, dY.desc.c, 1}, push,
+                  {from, from, strips.buffer}, {quads ? 4u : 1u});
+    addStrips(graph, pass, name, strips, to, gradient.biasOffset);
     return to;
 }
 
@@ -94,28 +135,29 @@ BufferId addBoundChannelSumPass(RenderGraph& graph, std::string_view name, const
 
 // Parts add to the same gradient: images, and of one image ranges of channels. The small tensor's
 // are rows of the gradient; a range of the large one's is part of a row, so rows come singly then.
-BufferId addCorrelationPass(RenderGraph& graph, std::string_view name, Extent2 kernel,
-                            Extent2 stride, Extent2 padding, const TensorId& small,
-                            const TensorId& large, const LayerWeights& gradient)
+BufferId addCorrelationPass(RenderGraph& graph, std::string_view name,
+                            const Correlation& correlation, const LayerWeights& gradient)
 {
+    const TensorId& small = correlation.small;
+    const TensorId& large = correlation.large;
     LayerWeights to = gradient;
     if (fitBindings(graph, {small, large}))
-        return addBoundCorrelationPass(graph, name, kernel, stride, padding, small, large, to);
+        return addBoundCorrelationPass(graph, name, correlation, to);
     const std::uint32_t images = imagesPerPart(graph, {small, large});
     const std::uint32_t columns = images == 1 ? channelsPerPart(graph, name, large) : large.desc.c;
     const std::uint32_t rows = columns < large.desc.c ? 1
                                : images == 1          ? channelsPerPart(graph, name, small)
                                                       : small.desc.c;
-    const std::uint32_t taps = kernel.h * kernel.w;
+    const std::uint32_t taps = correlation.kernel.h * correlation.kernel.w;
     for (std::uint32_t n = 0; n < small.desc.n; n += images)
         for (std::uint32_t a = 0; a < small.desc.c; a += rows)
             for (std::uint32_t b = 0; b < large.desc.c; b += columns) {
                 const std::uint32_t count = std::min(images, small.desc.n - n);
                 to.weightOffset = gradient.weightOffset + (a * large.desc.c + b) * taps;
-                to.block = addBoundCorrelationPass(
-                    graph, name, kernel, stride, padding,
-                    boundPart(small, n, count, a, std::min(rows, small.desc.c - a)),
-                    boundPart(large, n, count, b, std::min(columns, large.desc.c - b)), to);
+                Correlation part = correlation;
+                part.small = boundPart(small, n, count, a, std::min(rows, small.desc.c - a));
+                part.large = boundPart(large, n, count, b, std::min(columns, large.desc.c - b));
+                to.block = addBoundCorrelationPass(graph, name, part, to);
             }
     return to.block;
 }

@@ -15,6 +15,8 @@ inline constexpr std::uint32_t kConvLanes = 8;
 // 100 ms.
 inline constexpr std::uint64_t kDispatchWork = std::uint64_t(3) << 28;
 
+inline constexpr std::uint32_t kMaxGroups = 65535u; // of any device, per axis
+
 inline std::uint32_t divideUp(std::uint64_t a, std::uint64_t b)
 {
     return std::uint32_t((a + b - 1) / b);

@@ -124,6 +124,7 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
         state.properties.limits.maxTexelBufferElements = std::uint32_t(settings.bindingBytes / 4);
     }
     state.subgroupSize = settings.subgroups ? v11.subgroupSize : 1;
+    state.cpuForms = state.deviceInfo.type == "cpu" && !settings.gpuForms;
 
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
@@ -187,6 +188,11 @@ const DeviceInfo& Context::device() const
 {
     return state_->deviceInfo;
 }
+bool Context::cpuForms() const
+{
+    return state_->cpuForms;
+}
+
 std::uint32_t Context::subgroupSize() const
 {
     return state_->subgroupSize;

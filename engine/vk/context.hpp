@@ -26,6 +26,7 @@ struct ContextSettings
     std::uint64_t memoryBudget = 0; // bytes; 0: 80 % of the device's heap
     std::uint64_t bindingBytes = 0; // most that one binding may have; 0: what the device allows
     bool subgroups = true;          // false: kernels take the forms that need no subgroup
+    bool gpuForms = false;          // true: kernels take a GPU's forms on a CPU too, for tests
 };
 
 struct VulkanState; // the Vulkan objects; engine/vk and engine/graph's executor only
@@ -42,6 +43,7 @@ public:
 
     const DeviceInfo& device() const;
     std::uint32_t subgroupSize() const;
+    bool cpuForms() const;                       // do kernels take the forms of a CPU?
     std::uint64_t maxStorageBufferBytes() const; // range limit of one binding (128 MiB on lavapipe)
     // The most that can be bound both as a storage and as a texel buffer of floats, as tensors are.
     std::uint64_t maxTensorBindingBytes() const;

@@ -36,6 +36,7 @@ struct VulkanState
     VkFence fence = VK_NULL_HANDLE;
     VkPhysicalDeviceProperties properties{};
     std::uint32_t subgroupSize = 0;
+    bool cpuForms = false;
     DeviceInfo deviceInfo;
     std::unique_ptr<Allocator> allocator;
     std::unique_ptr<PipelineStore> pipelines;

@@ -30,9 +30,9 @@ const uint V = B / kLanes;
 
 void main()
 {
-    uint strip = push.firstStrip + gl_WorkGroupID.x;
-    uint firstColumn = gl_WorkGroupID.y * B;
-    uint firstA = gl_WorkGroupID.z * A * kLanes;
+    uint strip = push.firstStrip + gl_WorkGroupID.z;
+    uint firstColumn = gl_WorkGroupID.x * B;
+    uint firstA = gl_WorkGroupID.y * A * kLanes;
     uint lane = gl_LocalInvocationID.x;
     uint taps = push.kernelHeight * push.kernelWidth;
     uint columns = push.largeChannels * taps;
@@ -58,8 +58,8 @@ void main()
         [[unroll]] for (uint b = 0; b < B; ++b)
             sum[a][b] = 0.0;
 
-    uint pixel = strip * push.stripPixels;
-    uint end = min(pixel + push.stripPixels, push.pixels);
+    uint pixel = strip * push.stripLength;
+    uint end = min(pixel + push.stripLength, push.pixels);
     uint n = pixel / uint(smallPlane);
     int inPlane = int(pixel - n * uint(smallPlane));
     int y = inPlane / int(push.small.width);
@@ -119,7 +119,7 @@ void main()
         }
     }
 
-    uint stripOffset = strip * push.smallChannels * columns;
+    uint stripOffset = strip * push.stripStride;
     [[unroll]] for (uint a = 0; a < A; ++a) {
         uint channel = firstA + a * kLanes + lane;
         [[unroll]] for (uint b = 0; b < B; ++b)

@@ -85,6 +85,10 @@ struct ConvRowsPush
     float slope;
 };
 
+// conv_weight_tile.comp: threads of a workgroup, and channels a of a thread.
+STRANDLIGHT_CONST(uint) kWeightTileThreads = 128u;
+STRANDLIGHT_CONST(uint) kWeightTileChannels = 8u;
+
 // dWeight[a,b,ky,kx] = sum over n,y,x of small[n,a,y,x] large[n,b, y stride - padding + ky, x stride - padding + kx]
 struct ConvWeightPush
 {
@@ -99,23 +103,27 @@ struct ConvWeightPush
     uint paddingHeight;
     uint paddingWidth;
     uint pixels;      // N H W of the small tensor
-    uint stripPixels; // summed by one invocation
+    uint stripLength; // what one invocation or workgroup sums, in units of its kernel
     uint firstStrip;  // of this dispatch
+    uint stripStride; // floats from strip to strip
 };
 
 struct ChannelSumPush
 {
     TensorView tensor;
-    uint channels;
-    uint pixels; // N H W
-    uint stripPixels;
+    uint images;
+    uint invocations; // of a channel: strips
+    uint stripStride;
 };
 
 struct ReducePush
 {
-    uint count; // elements of one strip
+    uint count;       // floats of a strip that count,
+    uint stride;      // and that it takes: whole quads
     uint strips;
+    uint groupStrips; // summed by one invocation
     uint resultOffset;
+    uint accumulate; // add to the result
 };
 
 struct ElementPush
@@ -219,7 +227,7 @@ STRANDLIGHT_SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(strandlight::gpu::ConvPush) == 104);
 static_assert(sizeof(strandlight::gpu::ConvRowsPush) == 80);
-static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 76);
+static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 80);
 #endif
 
 #endif

@@ -61,6 +61,20 @@ inline std::vector<ConvCase> convCases(std::uint32_t count)
     return cases;
 }
 
+// Rows of whole quads on both sides: the weight gradient's form for CPU devices. Widths around its
+// turns of eight pixels, channels around its vectors.
+inline std::vector<ConvCase> quadConvCases()
+{
+    return {
+        makeConvCase({2, 7, 5, 12}, 33, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({3, 5, 6, 8}, 3, {3, 3}, {2, 2}, {1, 1}, {1, 1}),
+        makeConvCase({1, 3, 10, 24}, 17, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
+        makeConvCase({1, 17, 4, 40}, 9, {2, 2}, {2, 2}, {0, 0}, {0, 0}),
+        makeConvCase({2, 33, 3, 4}, 1, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
+        makeConvCase({1, 1, 7, 16}, 5, {3, 5}, {2, 1}, {0, 2}, {1, 0}),
+    };
+}
+
 // The shapes that have sliding-window kernels (compute_nn/conv_tiles.cpp), at widths around their
 // tiles.
 inline std::vector<ConvCase> rowConvCases()

@@ -31,7 +31,9 @@ struct OpCase
 
 // Cases by file: op_cases_conv.cpp, op_cases_other.cpp.
 void addConvCases(std::vector<OpCase>& cases);
-void addSubgroupCases(std::vector<OpCase>& cases); // a few of them, one of each kernel
+void addSubgroupCases(std::vector<OpCase>& cases);
+// Shapes for the kernels that a GPU takes.
+void addGpuFormCases(std::vector<OpCase>& cases); // a few of them, one of each kernel
 void addOtherCases(std::vector<OpCase>& cases);
 
 } // namespace strandlight::test

@@ -154,8 +154,20 @@ void addShape(std::vector<OpCase>& cases, const ConvCase& c, bool bias, bool ran
 void addSubgroupCases(std::vector<OpCase>& cases)
 {
     for (const ConvCase& c : {makeConvCase({2, 6, 9, 7}, 13, {3, 3}, {2, 2}, {1, 1}, {0, 0}),
-                              makeConvCase({1, 5, 6, 23}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0})})
+                              makeConvCase({1, 5, 6, 23}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+                              makeConvCase({1, 5, 3, 12}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0})})
         addShape(cases, c, true, true, 3);
+}
+
+void addGpuFormCases(std::vector<OpCase>& cases)
+{
+    std::uint32_t seed = 500;
+    for (const ConvCase& c : convCases(12))
+        addShape(cases, c, true, false, seed += 10);
+    for (const ConvCase& c : {makeConvCase({1, 3, 9, 71}, 33, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+                              makeConvCase({2, 19, 8, 36}, 12, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
+                              makeConvCase({1, 33, 5, 20}, 3, {3, 3}, {2, 2}, {1, 1}, {1, 1})})
+        addShape(cases, c, true, true, seed += 10);
 }
 
 void addConvCases(std::vector<OpCase>& cases)
@@ -168,6 +180,8 @@ void addConvCases(std::vector<OpCase>& cases)
     for (const ConvCase& c : convCases(36))
         add(c);
     for (const ConvCase& c : rowConvCases())
+        add(c);
+    for (const ConvCase& c : quadConvCases())
         add(c);
     // Many small images, as the encoder has them; and more pixels than one strip of the weight
     // gradient.

@@ -36,13 +36,15 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b)
 
 } // namespace
 
-TEST_CASE("every op: the device computes what the twin computes, and the same bits twice")
+namespace {
+
+void checkOps(Context& on, const std::vector<OpCase>& cases)
 {
-    for (const OpCase& op : allCases()) {
+    for (const OpCase& op : cases) {
         CAPTURE(op.name);
-        const std::vector<Output> got = op.device(context());
+        const std::vector<Output> got = op.device(on);
         const std::vector<ExpectedOutput> wanted = op.twin();
-        const std::vector<Output> again = op.device(context());
+        const std::vector<Output> again = op.device(on);
         REQUIRE_EQ(got.size(), wanted.size());
         for (std::size_t i = 0; i < got.size(); ++i) {
             CAPTURE(got[i].name);
@@ -57,7 +59,24 @@ TEST_CASE("every op: the device computes what the twin computes, and the same bi
             CHECK(sameBits(got[i].values, again[i].values));
         }
     }
-    CHECK_EQ(context().validationMessages(), 0);
+    CHECK_EQ(on.validationMessages(), 0);
+}
+
+} // namespace
+
+TEST_CASE("every op: the device computes what the twin computes, and the same bits twice")
+{
+    checkOps(context(), allCases());
+}
+
+TEST_CASE("a GPU's forms of the convolutions compute the same on any device")
+{
+    if (!context().cpuForms()) // such a device takes these forms in every other test
+        return;
+    Context gpuForms = Context::headless({.validation = true, .gpuForms = true});
+    std::vector<OpCase> cases;
+    addGpuFormCases(cases);
+    checkOps(gpuForms, cases);
 }
 
 TEST_CASE("kernels without subgroups give the same bits")
