@@ -117,7 +117,7 @@ KernelMeasurement measureStep(Context& context, const NetworkCase& c, const Benc
 std::vector<NetworkCase> networks()
 {
     return {{"U-Net 24-16-32-64-64-3 640x384", benchmarkUNet(), {1, 24, 384, 640}},
-            {"hair U-Net 640x384", hairUNet(), {1, 25, 384, 640}}};
+            {"hair U-Net 640x384", hairUNet(), {1, hairUNet().in, 384, 640}}};
 }
 
 } // namespace
