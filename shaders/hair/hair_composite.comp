@@ -37,9 +37,12 @@ void main()
     }
     int plane = int(push.y.width * push.y.height);
     int at = int(push.y.offset) + inTensor.y * int(push.y.width) + inTensor.x;
-    float blendedHere = nnLog1p(luminance(imageLoad(blended, pixel).rgb));
-    float brightness = nnExp(blendedHere + imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
-    brightness = brightness < 0.0 ? 0.0 : brightness;
+    vec4 mean = imageLoad(blended, pixel);
+    float near = luminance(mean.rgb);
+    float brightness = nnExp(nnLog1p(near) + imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
+    // What shows is some mean of the strands: not far from both of the blended ones.
+    float low = kHairLeastBrightness * min(near, mean.a), high = kHairMostBrightness * max(near, mean.a);
+    brightness = keepNan(brightness, clamp(brightness, low, high));
     float transmittance = exactHere + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;
     transmittance = keepNan(transmittance, clamp(transmittance, 0.0, 1.0));
 

@@ -160,6 +160,9 @@ struct HairTouchedPush
 STRANDLIGHT_CONST(uint) kHairOutputs = 12u;
 STRANDLIGHT_CONST(uint) kHairOutBrightness = 0u;
 STRANDLIGHT_CONST(uint) kHairOutTransmittance = 2u;
+// The filtered brightness stays within these, times the lesser and the greater of the blended ones.
+STRANDLIGHT_CONST(float) kHairLeastBrightness = 0.25f;
+STRANDLIGHT_CONST(float) kHairMostBrightness = 2.0f;
 STRANDLIGHT_CONST(uint) kHairOutLogits = 3u;
 
 struct HairCompositePush

@@ -119,8 +119,12 @@ glm::dvec4 expectedHair(const Filtered& f, const TensorDesc& desc, const std::ve
     for (std::uint32_t k = 0; k < 9; ++k)
         if (inside[k])
             color += weights[k] * glm::dvec3(f.blended.at(px + k % 3 - 1, py + k / 3 - 1));
-    const double here = f.planes[(std::size_t(gpu::kHairInputBlended) * desc.h + py) * desc.w + px];
-    const double brightness = std::max(std::expm1(here + out(gpu::kHairOutBrightness)), 0.0);
+    const glm::dvec4 mean(f.blended.at(px, py));
+    const double near = glm::dot(glm::dvec3(mean), glm::dvec3(0.2126, 0.7152, 0.0722));
+    const double brightness =
+        std::clamp(std::expm1(std::log1p(near) + out(gpu::kHairOutBrightness)),
+                   gpu::kHairLeastBrightness * std::min(near, mean.w),
+                   gpu::kHairMostBrightness * std::max(near, mean.w));
     const double size = glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
     const glm::dvec3 hair = size > 0.0 ? color * (brightness / size) : glm::dvec3(brightness);
     const double transmittance =
