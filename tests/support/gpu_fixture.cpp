@@ -7,13 +7,15 @@ namespace strandlight::test {
 
 Context& context()
 {
-    static Context instance = [] {
+    // Never destroyed: at exit, after main, objects that the validation layer made later than this
+    // one are gone already, and vkDestroyDevice can walk one of them for ever (seen once).
+    static Context& instance = *[] {
         ContextSettings settings;
         settings.validation = true;
         settings.pipelineCache = true;
         if (const char* device = std::getenv("STRANDLIGHT_TEST_DEVICE"))
             settings.device = device;
-        return Context::headless(settings);
+        return new Context(Context::headless(settings));
     }();
     return instance;
 }
