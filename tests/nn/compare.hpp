@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,11 @@ template <class A, class B> double relativeError(std::span<const A> a, std::span
 template <class A, class B> double relativeError(const std::vector<A>& a, const std::vector<B>& b)
 {
     return relativeError(std::span<const A>(a), std::span<const B>(b));
+}
+
+inline bool sameBits(const std::vector<float>& a, const std::vector<float>& b)
+{
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
 // Uniform in [low, high), a pure function of (seed, i); exact in fp32 and double alike.

@@ -1,7 +1,9 @@
 // Random and awkward convolution shapes, shared by the tests of the twins and of the kernels.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <initializer_list>
 #include <vector>
 
 #include "compute_nn/conv_desc.hpp"
@@ -29,11 +31,10 @@ inline ConvCase makeConvCase(TensorDesc x, std::uint32_t out, Extent2 kernel, Ex
              .outputPadding = outputPadding}};
 }
 
-// `count` cases: first the corners that break index arithmetic, then random ones. Channels up to
-// 33, sides up to 13.
-inline std::vector<ConvCase> convCases(std::uint32_t count)
+// The corners that break index arithmetic.
+inline std::vector<ConvCase> awkwardConvCases()
 {
-    std::vector<ConvCase> cases = {
+    return {
         makeConvCase({1, 1, 1, 1}, 1, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
         makeConvCase({2, 33, 1, 1}, 5, {1, 1}, {1, 1}, {0, 0}, {0, 0}), // dense
         makeConvCase({1, 3, 1, 1}, 33, {3, 3}, {1, 1}, {1, 1}, {0, 0}), // all taps but one outside
@@ -44,21 +45,6 @@ inline std::vector<ConvCase> convCases(std::uint32_t count)
                      {2, 2}), // stride beyond the kernel: holes
         makeConvCase({2, 5, 6, 4}, 3, {4, 4}, {2, 2}, {3, 3}, {0, 0}), // padding of kernel - 1
     };
-    for (std::uint32_t i = std::uint32_t(cases.size()); i < count; ++i) {
-        const auto pick = [&](std::uint32_t dimension, std::uint32_t low, std::uint32_t high) {
-            const float u = gpu::uniform3(i, 0, dimension, 7).x;
-            return low + std::uint32_t(u * float(high - low + 1));
-        };
-        const Extent2 kernel = {pick(0, 1, 5), pick(1, 1, 5)};
-        const Extent2 stride = {pick(2, 1, 3), pick(3, 1, 3)};
-        const Extent2 padding = {pick(4, 0, kernel.h / 2), pick(5, 0, kernel.w / 2)};
-        const TensorDesc x = {pick(6, 1, 3), pick(7, 1, 33), pick(8, kernel.h, 13),
-                              pick(9, kernel.w, 13)};
-        cases.push_back(makeConvCase(x, pick(10, 1, 33), kernel, stride, padding,
-                                     {pick(11, 0, stride.h - 1), pick(12, 0, stride.w - 1)}));
-    }
-    cases.resize(count);
-    return cases;
 }
 
 // Rows of whole quads on both sides: the weight gradient's form for CPU devices. Widths around its
@@ -91,6 +77,76 @@ inline std::vector<ConvCase> rowConvCases()
         makeConvCase({1, 9, 10, 43}, 24, {2, 2}, {2, 2}, {0, 0}, {1, 1}),
         makeConvCase({1, 24, 3, 47}, 10, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
     };
+}
+
+// One of `options`, or a number in [low, high], by counter: the same on every machine.
+class ConvCaseDice
+{
+public:
+    explicit ConvCaseDice(std::uint32_t index) : index_(index) {}
+    std::uint32_t pick(std::uint32_t low, std::uint32_t high)
+    {
+        const float u = gpu::uniform3(index_, 0, dimension_++, 7).x;
+        return low + std::uint32_t(u * float(high - low + 1));
+    }
+    std::uint32_t of(std::initializer_list<std::uint32_t> options)
+    {
+        return options.begin()[pick(0, std::uint32_t(options.size()) - 1)];
+    }
+
+private:
+    std::uint32_t index_, dimension_ = 0;
+};
+
+// Any kernel up to 5x5, stride up to 3 and padding up to the kernel: ones, primes, odd and even
+// numbers, 1 to 33 channels.
+inline ConvCase anyConvCase(std::uint32_t index)
+{
+    ConvCaseDice dice(index);
+    const auto channels = [&] {
+        return dice.of({1, 2, 3, 4, 5, 7, 8, 11, 13, 16, 17, 24, 31, 33});
+    };
+    const Extent2 kernel = {dice.pick(1, 5), dice.pick(1, 5)};
+    const Extent2 stride = {dice.pick(1, 3), dice.pick(1, 3)};
+    const Extent2 padding = {dice.pick(0, kernel.h), dice.pick(0, kernel.w)};
+    const Extent2 extra = {dice.pick(0, stride.h - 1), dice.pick(0, stride.w - 1)};
+    // No width of whole quads: those have a kernel of their own, compiled for each shape of window.
+    TensorDesc x = {dice.pick(1, 3), channels(), dice.of({1, 2, 3, 4, 5, 7, 8, 11, 13}),
+                    dice.of({1, 2, 3, 5, 7, 10, 11, 13})};
+    x.h = std::max(x.h, kernel.h - std::min(kernel.h - 1, 2 * padding.h));
+    x.w = std::max(x.w, kernel.w - std::min(kernel.w - 1, 2 * padding.w));
+    x.w += x.w % 4 == 0 ? 1 : 0;
+    ConvCase c = makeConvCase(x, channels(), kernel, stride, padding, extra);
+    // The transposed layer loses its output to a large padding: as much of it as leaves a pixel.
+    const auto most = [](std::uint32_t size, std::uint32_t k, std::uint32_t s, std::uint32_t more) {
+        return ((size - 1) * s + k + more - 1) / 2;
+    };
+    c.transpose.padding = {std::min(padding.h, most(x.h, kernel.h, stride.h, extra.h)),
+                           std::min(padding.w, most(x.w, kernel.w, stride.w, extra.w))};
+    return c;
+}
+
+// A shape of the fast kernels at another size, for the kernels that `prototype` has and no other.
+inline ConvCase resizedConvCase(const ConvCase& prototype, std::uint32_t index)
+{
+    ConvCaseDice dice(index);
+    ConvCase c = prototype;
+    c.x = {dice.pick(1, 3), prototype.x.c, dice.pick(4, 13),
+           prototype.x.w % 4 == 0 ? 8 * dice.pick(2, 5) : 2 * dice.pick(4, 20) + 1};
+    return c;
+}
+
+// Random shapes: of five, four of any kind and one of the fast kernels.
+inline std::vector<ConvCase> randomConvCases(std::uint32_t count)
+{
+    std::vector<ConvCase> fast = rowConvCases();
+    for (const ConvCase& c : quadConvCases())
+        fast.push_back(c);
+    std::vector<ConvCase> cases;
+    for (std::uint32_t i = 0; i < count; ++i)
+        cases.push_back(i % 5 == 4 ? resizedConvCase(fast[i / 5 % fast.size()], i)
+                                   : anyConvCase(i));
+    return cases;
 }
 
 } // namespace strandlight::test

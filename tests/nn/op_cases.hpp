@@ -29,6 +29,10 @@ struct OpCase
     std::function<std::vector<ExpectedOutput>()> twin; // the same outputs in the same order
 };
 
+// Checks values [n] against the twin's, in the norm and element by element; gives the error in the
+// norm.
+double checkOutput(const Output& got, const ExpectedOutput& wanted);
+
 // Cases by file: op_cases_conv.cpp, op_cases_other.cpp.
 void addConvCases(std::vector<OpCase>& cases);
 void addSubgroupCases(std::vector<OpCase>& cases);

@@ -1,7 +1,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "compute_nn/conv2d.hpp"
 #include "compute_nn/sg_mixture.hpp"
@@ -29,12 +28,22 @@ std::vector<OpCase> allCases()
     return cases;
 }
 
-bool sameBits(const std::vector<float>& a, const std::vector<float>& b)
-{
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
-}
-
 } // namespace
+
+double strandlight::test::checkOutput(const Output& got, const ExpectedOutput& wanted)
+{
+    CAPTURE(got.name);
+    REQUIRE_EQ(got.values.size(), wanted.values.size());
+    const double error = relativeError(got.values, wanted.values);
+    CHECK_LE(error, kNormTolerance);
+    double largest = 0.0, worst = 0.0;
+    for (std::size_t k = 0; k < wanted.values.size(); ++k) {
+        largest = std::fmax(largest, std::abs(wanted.values[k]));
+        worst = std::fmax(worst, std::abs(wanted.values[k] - got.values[k]));
+    }
+    CHECK_LE(worst, kElementTolerance * largest + 1e-30);
+    return error;
+}
 
 namespace {
 
@@ -48,14 +57,7 @@ void checkOps(Context& on, const std::vector<OpCase>& cases)
         REQUIRE_EQ(got.size(), wanted.size());
         for (std::size_t i = 0; i < got.size(); ++i) {
             CAPTURE(got[i].name);
-            REQUIRE_EQ(got[i].values.size(), wanted[i].values.size());
-            CHECK_LE(relativeError(got[i].values, wanted[i].values), kNormTolerance);
-            double largest = 0.0, worst = 0.0;
-            for (std::size_t k = 0; k < wanted[i].values.size(); ++k) {
-                largest = std::fmax(largest, std::abs(wanted[i].values[k]));
-                worst = std::fmax(worst, std::abs(wanted[i].values[k] - got[i].values[k]));
-            }
-            CHECK_LE(worst, kElementTolerance * largest + 1e-30);
+            checkOutput(got[i], wanted[i]);
             CHECK(sameBits(got[i].values, again[i].values));
         }
     }
