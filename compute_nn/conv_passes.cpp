@@ -139,8 +139,6 @@ TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& 
     const TensorId& saved = conv.backward.activated ? *conv.backward.activated : result;
     if (fitBindings(graph, {source, result, saved}))
         return addBoundConvPass(graph, name, conv, source, weights, result);
-    if (conv.tiles)
-        throw Error(std::string(name) + ": tiles of a tensor that is larger than one binding");
     const std::uint32_t images = imagesPerPart(graph, {source, result, saved});
     TensorId to = result;
     for (std::uint32_t n = 0; n < result.desc.n; n += images)

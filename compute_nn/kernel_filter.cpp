@@ -1,7 +1,10 @@
 #include "compute_nn/kernel_filter.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string>
 
+#include "compute_nn/tensor_parts.hpp"
 #include "engine/base/error.hpp"
 #include "kernels/nn.gen.hpp"
 
@@ -18,6 +21,40 @@ void checkShape(std::string_view name, const char* what, const TensorId& tensor,
                     shapeText(wanted));
 }
 
+// The planes of images [first, first + count) as three bindings of three planes each.
+struct FilterGroups
+{
+    std::array<TensorId, 3> parts;
+
+    FilterGroups(const TensorId& nine, std::uint32_t first, std::uint32_t count)
+    {
+        for (std::uint32_t g = 0; g < 3; ++g)
+            parts[g] = boundPart(nine, first, count, g * gpu::kFilterGroup, gpu::kFilterGroup);
+    }
+    Binding binding(std::uint32_t group, BufferId version) const
+    {
+        return parts[group].binding(version);
+    }
+    std::uint32_t offset(std::uint32_t group) const { return parts[group].view().offset; }
+};
+
+// Images whose tensors can be bound, at least one; of one alone, three of its nine planes or all
+// four of its colours.
+std::uint32_t filterImages(const RenderGraph& graph, std::string_view name, const TensorId& nine,
+                           std::initializer_list<TensorId> fours)
+{
+    std::uint32_t images = imagesPerPart(graph, {nine});
+    for (const TensorId& four : fours)
+        images = std::min(images, imagesPerPart(graph, {four}));
+    bool fits = channelsPerPart(graph, name, nine) >= gpu::kFilterGroup;
+    for (const TensorId& four : fours)
+        fits = fits && channelsPerPart(graph, name, four) == gpu::kFilterChannels;
+    if (!fits)
+        throw Error(std::string(name) + ": four planes of " + shapeText(nine.desc) +
+                    " are larger than the device can bind");
+    return images;
+}
+
 } // namespace
 
 TensorId kernelFilterForward(RenderGraph& graph, std::string_view name, const TensorId& logits,
@@ -26,13 +63,29 @@ TensorId kernelFilterForward(RenderGraph& graph, std::string_view name, const Te
     checkShape(name, "the image", image, gpu::kFilterChannels, image.desc);
     checkShape(name, "logits", logits, gpu::kFilterTaps, image.desc);
     checkShape(name, "the output", y, gpu::kFilterChannels, image.desc);
+    const std::uint32_t images = filterImages(graph, name, logits, {image, y});
     PassBuilder pass = graph.addComputePass(name);
     const BufferId kernel = pass.read(logits.buffer);
     const BufferId from = pass.read(image.buffer);
     const BufferId to = pass.write(y.buffer);
-    const gpu::KernelFilterPush push{logits.view(), image.view(), image.view(), y.view()};
-    pass.dispatch(kernels::kernel_filter, {image.desc.pixels(), image.desc.n, 1}, push,
-                  {kernel, from, from, to}, {0});
+    for (std::uint32_t n = 0; n < image.desc.n; n += images) {
+        const std::uint32_t count = std::min(images, image.desc.n - n);
+        const FilterGroups k(logits, n, count);
+        const TensorId x = boundPart(image, n, count, 0, gpu::kFilterChannels);
+        const TensorId result = boundPart(y, n, count, 0, gpu::kFilterChannels);
+        const gpu::KernelFilterPush push{.image = x.view(),
+                                         .logitOffset = {k.offset(0), k.offset(1), k.offset(2)},
+                                         .logitImageStride = logits.view().imageStride,
+                                         .dYOffset = 0,
+                                         .dYImageStride = 0,
+                                         .resultOffset = {result.view().offset, 0, 0},
+                                         .resultImageStride = result.view().imageStride};
+        const Binding colors = x.binding(from), answer = result.binding(to);
+        pass.dispatch(kernels::kernel_filter, {image.desc.pixels(), count, 1}, push,
+                      {k.binding(0, kernel), k.binding(1, kernel), k.binding(2, kernel), colors,
+                       colors, answer, answer, answer},
+                      {0});
+    }
     return y.as(to);
 }
 
@@ -43,14 +96,32 @@ TensorId kernelFilterBackward(RenderGraph& graph, std::string_view name, const T
     checkShape(name, "logits", logits, gpu::kFilterTaps, image.desc);
     checkShape(name, "the gradient", dY, gpu::kFilterChannels, image.desc);
     checkShape(name, "the logits' gradient", dLogits, gpu::kFilterTaps, image.desc);
+    const std::uint32_t images = std::min(filterImages(graph, name, logits, {image, dY}),
+                                          filterImages(graph, name, dLogits, {}));
     PassBuilder pass = graph.addComputePass(name);
     const BufferId kernel = pass.read(logits.buffer);
     const BufferId from = pass.read(image.buffer);
     const BufferId gradient = pass.read(dY.buffer);
     const BufferId to = pass.write(dLogits.buffer);
-    const gpu::KernelFilterPush push{logits.view(), image.view(), dY.view(), dLogits.view()};
-    pass.dispatch(kernels::kernel_filter, {image.desc.pixels(), image.desc.n, 1}, push,
-                  {kernel, from, gradient, to}, {1});
+    for (std::uint32_t n = 0; n < image.desc.n; n += images) {
+        const std::uint32_t count = std::min(images, image.desc.n - n);
+        const FilterGroups k(logits, n, count), result(dLogits, n, count);
+        const TensorId x = boundPart(image, n, count, 0, gpu::kFilterChannels);
+        const TensorId dOut = boundPart(dY, n, count, 0, gpu::kFilterChannels);
+        const gpu::KernelFilterPush push{
+            .image = x.view(),
+            .logitOffset = {k.offset(0), k.offset(1), k.offset(2)},
+            .logitImageStride = logits.view().imageStride,
+            .dYOffset = dOut.view().offset,
+            .dYImageStride = dOut.view().imageStride,
+            .resultOffset = {result.offset(0), result.offset(1), result.offset(2)},
+            .resultImageStride = dLogits.view().imageStride};
+        pass.dispatch(kernels::kernel_filter, {image.desc.pixels(), count, 1}, push,
+                      {k.binding(0, kernel), k.binding(1, kernel), k.binding(2, kernel),
+                       x.binding(from), dOut.binding(gradient), result.binding(0, to),
+                       result.binding(1, to), result.binding(2, to)},
+                      {1});
+    }
     return dLogits.as(to);
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "compute_nn/sum.hpp"
+#include "compute_nn/tensor_parts.hpp"
 #include "engine/base/assert.hpp"
 #include "kernels/nn.gen.hpp"
 
@@ -29,10 +30,23 @@ LossResult addLossPass(RenderGraph& graph, std::string_view name, LossKind kind,
     const BufferId w = weights ? pass.read(weights->buffer) : p;
     const BufferId dP = pass.write(gradient.buffer);
     const BufferId sums = pass.write(graph.createBuffer(title + " chunks", chunks * 4));
-    const gpu::LossPush push{count, chunk, weights ? weights->stride : 1,
-                             weights ? weights->count : 1, float(1.0 / count)};
-    pass.dispatch(kernels::loss, {chunks, 1, 1}, push, {p, t, w, dP, sums},
-                  {std::uint32_t(kind), weights ? 1u : 0u});
+    gpu::LossPush push{count,
+                       chunk,
+                       0,
+                       weights ? weights->stride : 1,
+                       weights ? weights->count : 1,
+                       float(1.0 / count)};
+    const std::uint32_t perPart = flatImagesPerPart(graph, name, chunks, chunk);
+    for (; push.firstChunk < chunks; push.firstChunk += perPart) {
+        const std::uint32_t first = push.firstChunk * chunk;
+        push.count = std::min(count - first, perPart * chunk);
+        const auto part = [&](BufferId tensor) {
+            return flatPart(tensor, count, 1, first, push.count);
+        };
+        pass.dispatch(kernels::loss, {(push.count + chunk - 1) / chunk, 1, 1}, push,
+                      {part(p), part(t), weights ? Binding(w) : part(p), part(dP), sums},
+                      {std::uint32_t(kind), weights ? 1u : 0u});
+    }
     return {addSumPass(graph, title + " sum", sums, chunks, push.scale), gradient.as(dP)};
 }
 

@@ -137,8 +137,19 @@ void ParameterIds::checkFinite(RenderGraph& graph, const std::string& name, Buff
     PassBuilder pass = graph.addComputePass("check " + name);
     const BufferId from = pass.read(buffer);
     status = pass.write(status);
-    const gpu::FiniteCheckPush push{offset, count, chunk, slots_, limit};
-    pass.dispatch(kernels::finite_check, {(count + chunk - 1) / chunk, 1, 1}, push, {from, status});
+    // Parts that can be bound; their bindings begin where they may.
+    constexpr std::uint32_t kStep = Binding::kAlignment / sizeof(float);
+    const std::uint64_t most = graph.context().maxTensorBindingBytes() / sizeof(float) - kStep;
+    const std::uint32_t end = offset + count;
+    for (std::uint32_t first = offset; first < end;) {
+        const std::uint32_t bound = first / kStep * kStep;
+        const auto part = std::uint32_t(std::min<std::uint64_t>(most, end - first));
+        const gpu::FiniteCheckPush push{first - bound, part, chunk, slots_, limit};
+        pass.dispatch(
+            kernels::finite_check, {(part + chunk - 1) / chunk, 1, 1}, push,
+            {Binding(from, bound * sizeof(float), (first - bound + part) * sizeof(float)), status});
+        first += part;
+    }
     if (slots_ < owner_->slotNames_.size())
         owner_->slotNames_[slots_] = name;
     else

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "compute_nn/tensor_parts.hpp"
 #include "engine/base/error.hpp"
 #include "kernels/nn.gen.hpp"
 
@@ -49,11 +50,33 @@ std::uint32_t directionTile(const SgMixtureDesc& desc)
     return desc.planar && desc.directions % 4 == 0 ? 4 : 1;
 }
 
-std::uint32_t imagesPerDispatch(const SgMixtureDesc& desc)
+// Calls dispatch(push, part) for so many images at once as can be bound and make a dispatch;
+// part(buffer, floats) binds those of a buffer that has `floats` for each.
+template <class Dispatch>
+void forParts(const RenderGraph& graph, const SgMixtureDesc& desc, Dispatch dispatch)
 {
     const std::uint64_t perImage = std::uint64_t(desc.lobes) * desc.directions;
     // Images are a dimension of the dispatch, which a device may limit to 65,535 groups.
-    return std::uint32_t(std::clamp<std::uint64_t>(kDispatchWork / perImage, 1, 32768));
+    const auto perDispatch =
+        std::uint32_t(std::clamp<std::uint64_t>(kDispatchWork / perImage, 1, 32768));
+    const std::uint32_t perPart =
+        flatImagesPerPart(graph, "sg mixture", desc.images,
+                          std::max<std::uint64_t>(desc.lobes * 7ull, desc.directions * 3ull));
+    gpu::SgMixturePush push = pushOf(desc);
+    for (std::uint32_t first = 0; first < desc.images; first += perPart) {
+        push.images = std::min(perPart, desc.images - first);
+        const auto part = [&](BufferId buffer, std::uint32_t floats) {
+            return flatPart(buffer, desc.images, floats, first, push.images);
+        };
+        for (push.firstImage = 0; push.firstImage < push.images; push.firstImage += perDispatch)
+            dispatch(push, std::min(perDispatch, push.images - push.firstImage), part);
+    }
+}
+
+template <class Part>
+Binding directionsOf(const SgMixtureDesc& desc, BufferId directions, const Part& part)
+{
+    return desc.sharedDirections ? Binding(directions) : part(directions, desc.directions * 3);
 }
 
 } // namespace
@@ -65,7 +88,15 @@ TensorId addSgDecodePass(RenderGraph& graph, const SgMixtureDesc& desc, const Te
     PassBuilder pass = graph.addComputePass("sg decode");
     const BufferId from = pass.read(raw.buffer);
     const BufferId to = pass.write(lobes.buffer);
-    pass.dispatch(kernels::sg_decode, {desc.images * desc.lobes, 1, 1}, pushOf(desc), {from, to});
+    const std::uint32_t floats = desc.lobes * 7;
+    const std::uint32_t perPart = flatImagesPerPart(graph, "sg decode", desc.images, floats);
+    gpu::SgMixturePush push = pushOf(desc);
+    for (std::uint32_t first = 0; first < desc.images; first += perPart) {
+        push.images = std::min(perPart, desc.images - first);
+        pass.dispatch(kernels::sg_decode, {push.images * desc.lobes, 1, 1}, push,
+                      {flatPart(from, desc.images, floats, first, push.images),
+                       flatPart(to, desc.images, floats, first, push.images)});
+    }
     return lobes.as(to);
 }
 
@@ -81,14 +112,15 @@ TensorId sgMixtureForward(RenderGraph& graph, const SgMixtureDesc& desc, const T
     const BufferId from = pass.read(lobes.buffer);
     const BufferId along = pass.read(directions);
     const BufferId to = pass.write(radiance.buffer);
-    gpu::SgMixturePush push = pushOf(desc);
-    const std::uint32_t images = imagesPerDispatch(desc);
     const std::uint32_t slices =
         (desc.directions + gpu::kSgMixtureSlice - 1) / gpu::kSgMixtureSlice;
-    for (; push.firstImage < desc.images; push.firstImage += images)
-        pass.dispatch(kernels::sg_mixture,
-                      {std::min(images, desc.images - push.firstImage), slices, 1}, push,
-                      {from, along, along, to, to}, {lobesAtOnce, blocks, directionTile(desc)});
+    forParts(graph, desc, [&](const auto& push, std::uint32_t images, const auto& part) {
+        const Binding list = directionsOf(desc, along, part);
+        const Binding result = part(to, desc.directions * 3);
+        pass.dispatch(kernels::sg_mixture, {images, slices, 1}, push,
+                      {part(from, desc.lobes * 7), list, list, result, result},
+                      {lobesAtOnce, blocks, directionTile(desc)});
+    });
     return radiance.as(to);
 }
 
@@ -106,13 +138,14 @@ TensorId sgMixtureBackward(RenderGraph& graph, const SgMixtureDesc& desc, const 
     const BufferId along = pass.read(directions);
     const BufferId from = pass.read(dRadiance.buffer);
     const BufferId to = pass.write(dRaw.buffer);
-    gpu::SgMixturePush push = pushOf(desc);
-    const std::uint32_t images = imagesPerDispatch(desc);
-    for (; push.firstImage < desc.images; push.firstImage += images)
-        pass.dispatch(
-            kernels::sg_mixture_backward,
-            {std::min(images, desc.images - push.firstImage), desc.lobes / lobesAtOnce, 1}, push,
-            {values, along, along, from, from, to}, {lobesAtOnce, tile});
+    forParts(graph, desc, [&](const auto& push, std::uint32_t images, const auto& part) {
+        const Binding list = directionsOf(desc, along, part);
+        const Binding gradient = part(from, desc.directions * 3);
+        pass.dispatch(kernels::sg_mixture_backward, {images, desc.lobes / lobesAtOnce, 1}, push,
+                      {part(values, desc.lobes * 7), list, list, gradient, gradient,
+                       part(to, desc.lobes * 7)},
+                      {lobesAtOnce, tile});
+    });
     return dRaw.as(to);
 }
 

@@ -46,6 +46,27 @@ std::uint32_t imagesPerPart(const RenderGraph& graph, std::initializer_list<Tens
     return std::uint32_t(std::max<std::uint64_t>(images, 1));
 }
 
+std::uint32_t flatImagesPerPart(const RenderGraph& graph, std::string_view pass,
+                                std::uint32_t images, std::uint64_t floats)
+{
+    constexpr std::uint64_t kStep = Binding::kAlignment / sizeof(float);
+    const std::uint64_t most = graph.context().maxTensorBindingBytes() / (floats * sizeof(float));
+    if (most >= images)
+        return images;
+    if (most < kStep)
+        throw Error(std::string(pass) + ": " + std::to_string(kStep) + " parts of " +
+                    std::to_string(floats * sizeof(float)) +
+                    " bytes are more than the device can bind");
+    return std::uint32_t(most / kStep * kStep);
+}
+
+Binding flatPart(BufferId buffer, std::uint32_t images, std::uint64_t floats, std::uint32_t first,
+                 std::uint32_t count)
+{
+    const std::uint64_t image = floats * sizeof(float);
+    return {buffer, first * image, first + count < images ? count * image : 0};
+}
+
 std::uint32_t channelsPerPart(const RenderGraph& graph, std::string_view pass,
                               const TensorId& tensor)
 {

@@ -17,6 +17,14 @@ TensorId boundPart(const TensorId& tensor, std::uint32_t firstImage, std::uint32
 
 // Images of these tensors whose parts can be bound, at least 1.
 std::uint32_t imagesPerPart(const RenderGraph& graph, std::initializer_list<TensorId> tensors);
+// Of so many images of `floats` each, packed: all, or as many as can be bound, then a multiple of
+// 64, so that every part begins where a binding may. Throws Error when 64 are too large.
+std::uint32_t flatImagesPerPart(const RenderGraph& graph, std::string_view pass,
+                                std::uint32_t images, std::uint64_t floats);
+// Of such images those from `first` on; the last ones to the end of the buffer, since a view of
+// whole texels need not end where the tensor does.
+Binding flatPart(BufferId buffer, std::uint32_t images, std::uint64_t floats, std::uint32_t first,
+                 std::uint32_t count);
 // Channels of one image that can be bound, up to all. Throws Error when one plane is too large.
 std::uint32_t channelsPerPart(const RenderGraph& graph, std::string_view pass,
                               const TensorId& tensor);

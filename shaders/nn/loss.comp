@@ -24,8 +24,9 @@ void main()
     if (i >= push.count)
         return;
     uint end = min(i + push.chunk, push.count);
-    uint inStride = i % push.weightStride;
-    uint weightIndex = i / push.weightStride % push.weightCount;
+    uint among = push.firstChunk * push.chunk + i;
+    uint inStride = among % push.weightStride;
+    uint weightIndex = among / push.weightStride % push.weightCount;
     // Kahan's sum: `precise`, or the compiler proves the correction to be zero.
     precise float sum = 0.0;
     precise float lost = 0.0;
@@ -67,5 +68,5 @@ void main()
         lost = (total - sum) - term;
         sum = total;
     }
-    chunks[chunk] = sum;
+    chunks[push.firstChunk + chunk] = sum;
 }

@@ -139,12 +139,18 @@ struct ElementPush
 STRANDLIGHT_CONST(uint) kFilterTaps = 9u;
 STRANDLIGHT_CONST(uint) kFilterChannels = 4u;
 
+// Planes of a binding of the logits: three bindings hold a larger image than one.
+STRANDLIGHT_CONST(uint) kFilterGroup = 3u;
+
 struct KernelFilterPush
 {
-    TensorView logits;
     TensorView image;
-    TensorView dY; // backward
-    TensorView result;
+    uint logitOffset[3]; // of each group
+    uint logitImageStride;
+    uint dYOffset; // backward
+    uint dYImageStride;
+    uint resultOffset[3]; // y has the first alone
+    uint resultImageStride;
 };
 
 // tile_list.comp: TileReach, TouchedBlocks and TileRows of compute_nn/unet_tiles.hpp.
@@ -172,9 +178,10 @@ struct SumPush
 
 struct LossPush
 {
-    uint count;
+    uint count;        // of this dispatch
     uint chunk;        // elements of one invocation
-    uint weightStride; // element i has weight[i / weightStride % weightCount]
+    uint firstChunk;   // of this dispatch, among all
+    uint weightStride; // element i of all has weight[i / weightStride % weightCount]
     uint weightCount;
     float scale;       // 1 / count
 };
