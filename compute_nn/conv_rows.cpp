@@ -14,79 +14,137 @@ namespace {
 
 constexpr std::uint32_t kGroup = 64; // strips of a workgroup
 
+// How a layer is cut: into groups, that is blocks of output channels x row phases, and strips.
+struct RowPlan
+{
+    Extent2 scale; // pixels of the result per row and column of the grid
+    std::uint32_t turn, turns, blocks, channels, phases, taps, strips;
+    std::uint64_t groupWork; // multiply-adds of one strip
+
+    RowPlan(const ConvPass& conv, const RowTile& tile, const TensorDesc& source,
+            const TensorDesc& result)
+        : scale(conv.transposed ? conv.stride : Extent2{1, 1}), turn(unroll(source.c, tile.turn)),
+          turns(source.c / turn), blocks(divideUp(result.c, tile.channels)),
+          channels(divideUp(result.c, blocks)), phases(tile.splitRows ? scale.h : 1),
+          taps(conv.kernel.h * conv.kernel.w / phases),
+          strips(result.n * divideUp(result.h, scale.h) *
+                 divideUp(divideUp(result.w, scale.w), tile.columns)),
+          groupWork(std::uint64_t(taps) * source.c * channels * tile.columns)
+    {
+    }
+    std::uint32_t groups() const { return blocks * phases; }
+    std::uint32_t turnTexels() const { return divideUp(turn * channels * taps, 4); }
+};
+
+// Every load and store of four neighbours is one texel of each tensor.
+bool hasQuads(const ConvPass& conv, const RowTile& tile, const TensorId& source,
+              const TensorId& result)
+{
+    const std::uint32_t loaded = tile.columns * (conv.transposed ? 1 : conv.stride.w);
+    const std::uint32_t stored = tile.columns * (conv.transposed ? conv.stride.w : 1);
+    return loaded % 4 == 0 && stored % 4 == 0 && wholeQuads(source) && wholeQuads(result) &&
+           (!conv.backward.activated || wholeQuads(*conv.backward.activated));
+}
+
+// Weights in the order in which the kernel deals them out; a dispatch of the same pass.
+BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
+                     const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
+                     BufferId parameters, std::uint32_t outChannels)
+{
+    const gpu::ConvPackPush push{.texels = plan.groups() * plan.turns * plan.turnTexels(),
+                                 .weightOffset = weights.weightOffset,
+                                 .weightStrideOut = conv.weightStrideOut,
+                                 .weightStrideIn = conv.weightStrideIn,
+                                 .outChannels = outChannels,
+                                 .channels = plan.channels,
+                                 .turns = plan.turns,
+                                 .turnInputs = plan.turn,
+                                 .turnTexels = plan.turnTexels(),
+                                 .taps = plan.taps,
+                                 .phases = plan.phases,
+                                 .kernelWidth = conv.kernel.w,
+                                 .paddingHeight = conv.padding.h};
+    const BufferId packed = pass.write(
+        graph.createBuffer(std::string(name) + " weights", std::uint64_t(push.texels) * 16));
+    pass.dispatch(kernels::conv_pack, {push.texels, 1, 1}, push, {parameters, packed});
+    return packed;
+}
+
 } // namespace
 
 TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,
                         const RowTile& tile, const TensorId& source, const LayerWeights& weights,
                         const TensorId& result)
 {
-    const Extent2 scale = conv.transposed ? conv.stride : Extent2{1, 1};
-    const std::uint32_t turn = unroll(source.desc.c, tile.turn);
-    checkTripBudget("conv_rows", source.desc.c / turn + 1);
-    const std::uint32_t blocks = divideUp(result.desc.c, tile.channels);
-    const std::uint32_t channels = divideUp(result.desc.c, blocks);
-    const std::uint32_t strips = result.desc.n * divideUp(result.desc.h, scale.h) *
-                                 divideUp(divideUp(result.desc.w, scale.w), tile.columns);
-    const std::uint64_t blockWork = std::uint64_t(conv.kernel.h) * conv.kernel.w * source.desc.c *
-                                    channels * tile.columns; // of one strip
+    const RowPlan plan(conv, tile, source.desc, result.desc);
+    checkTripBudget("conv_rows", plan.turns + 1);
 
     PassBuilder pass = graph.addComputePass(name);
     const Binding from = source.binding(pass.read(source.buffer));
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
     const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
+    const Binding packed =
+        packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
     gpu::ConvRowsPush push{.source = source.view(),
                            .result = result.view(),
                            .savedOffset = epilogue.savedView.offset,
                            .savedImageStride = epilogue.savedView.imageStride,
                            .inChannels = source.desc.c,
                            .outChannels = result.desc.c,
-                           .weightOffset = weights.weightOffset,
-                           .weightStrideOut = conv.weightStrideOut,
-                           .weightStrideIn = conv.weightStrideIn,
                            .biasOffset = weights.biasOffset,
-                           .firstChannel = 0,
+                           .firstGroup = 0,
                            .firstStrip = 0,
-                           .endStrip = strips,
+                           .endStrip = plan.strips,
                            .slope = epilogue.slope};
-    const std::vector<std::uint32_t> constants = {kGroup,
-                                                  channels,
-                                                  tile.columns,
-                                                  turn,
-                                                  conv.kernel.h,
-                                                  conv.kernel.w,
-                                                  conv.stride.h,
-                                                  conv.stride.w,
-                                                  conv.padding.h,
-                                                  conv.padding.w,
-                                                  epilogue.flags |
-                                                      (conv.tiles ? gpu::kConvTiles : 0)};
+    const bool quads = hasQuads(conv, tile, source, result);
+    const std::vector<std::uint32_t> constants = {
+        kGroup,
+        plan.channels,
+        tile.columns,
+        plan.turn,
+        conv.kernel.h,
+        conv.kernel.w,
+        conv.stride.h,
+        conv.stride.w,
+        conv.padding.h,
+        conv.padding.w,
+        plan.phases,
+        epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0)};
     const KernelBlob& kernel = conv.transposed ? kernels::conv_transpose_rows : kernels::conv_rows;
+    // Without quads nothing reads these two, and the tensors may not be whole texels.
+    const Binding fromQuads = quads ? from : packed;
+    const Binding savedQuads = quads ? epilogue.saved : packed;
+    const Binding into = result.binding(to);
 
-    if (conv.tiles) { // cut by blocks of channels, as if all tiles were active
+    if (conv.tiles) { // cut by groups, as if all tiles were active
         STRANDLIGHT_ASSERT_EQ(result.desc.n, 1u);
         const BufferId tiles = pass.read(conv.tiles->tiles);
         const std::uint32_t stripsPerTile =
-            (gpu::kTileSide / (scale.w * tile.columns)) * (gpu::kTileSide / scale.h);
-        const std::uint32_t slice = std::uint32_t(
-            std::clamp<std::uint64_t>(kDispatchWork / (blockWork * strips), 1, gpu::kTileBlocks));
-        for (std::uint32_t first = 0; first < blocks; first += slice) {
-            push.firstChannel = first * channels;
-            pass.dispatchIndirect(
-                kernel, conv.tiles->arguments,
-                tileArguments(kGroup / stripsPerTile, std::min(slice, blocks - first)), push,
-                {from, parameters, epilogue.saved, tiles, result.binding(to)}, constants);
-        }
+            (gpu::kTileSide / (plan.scale.w * tile.columns)) * (gpu::kTileSide / plan.scale.h);
+        const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
+            kDispatchWork / (plan.groupWork * plan.strips), 1, gpu::kTileBlocks));
+        for (; push.firstGroup < plan.groups(); push.firstGroup += slice)
+            pass.dispatchIndirect(kernel, conv.tiles->arguments,
+                                  tileArguments(kGroup / stripsPerTile,
+                                                std::min(slice, plan.groups() - push.firstGroup)),
+                                  push,
+                                  {from, fromQuads, packed, parameters, epilogue.saved, savedQuads,
+                                   tiles, into, into},
+                                  constants);
         return result.as(to);
     }
-    const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
-                                    kDispatchWork / (blockWork * blocks * kGroup), 1, kMaxGroups)) *
-                                kGroup;
-    for (std::uint32_t first = 0; first < strips; first += slice) {
+    const std::uint32_t slice =
+        std::uint32_t(std::clamp<std::uint64_t>(
+            kDispatchWork / (plan.groupWork * plan.groups() * kGroup), 1, kMaxGroups)) *
+        kGroup;
+    for (std::uint32_t first = 0; first < plan.strips; first += slice) {
         push.firstStrip = first;
-        push.endStrip = std::min(strips, first + slice);
-        pass.dispatch(kernel, {push.endStrip - first, blocks, 1}, push,
-                      {from, parameters, epilogue.saved, from, result.binding(to)}, constants);
+        push.endStrip = std::min(plan.strips, first + slice);
+        pass.dispatch(
+            kernel, {push.endStrip - first, plan.groups(), 1}, push,
+            {from, fromQuads, packed, parameters, epilogue.saved, savedQuads, from, into, into},
+            constants);
     }
     return result.as(to);
 }

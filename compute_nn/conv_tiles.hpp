@@ -13,6 +13,7 @@ struct RowTile
     std::uint32_t channels; // at most; blocks of output channels are made equal
     std::uint32_t columns;  // of the grid (conv_rows.glsl)
     std::uint32_t turn;     // input channels per loop turn, at most
+    bool splitRows = false; // transposed: an invocation computes one row phase, not all
 };
 
 struct RowShape

@@ -38,12 +38,6 @@ WeightForm generalForm(std::uint32_t shuffleFlag, const Correlation& c)
     return form;
 }
 
-bool wholeQuads(const TensorId& tensor)
-{
-    const gpu::TensorView view = tensor.view();
-    return view.offset % 4 == 0 && view.imageStride % 4 == 0 && view.width % 4 == 0;
-}
-
 bool hasQuadForm(const Correlation& c)
 {
     return wholeQuads(c.small) && wholeQuads(c.large) && c.kernel.h * c.kernel.w <= 64;

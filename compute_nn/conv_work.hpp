@@ -32,6 +32,13 @@ inline std::uint32_t unroll(std::uint32_t count, std::uint32_t limit)
     return best;
 }
 
+// Whether rows are whole texels of four floats.
+inline bool wholeQuads(const TensorId& tensor)
+{
+    const gpu::TensorView view = tensor.view();
+    return view.offset % 4 == 0 && view.imageStride % 4 == 0 && view.width % 4 == 0;
+}
+
 inline std::uint32_t shuffleFlag(const RenderGraph& graph)
 {
     return graph.context().subgroupSize() >= kConvLanes ? gpu::kConvShuffle : 0;

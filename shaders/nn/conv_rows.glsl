@@ -1,10 +1,12 @@
-// What the two sliding-window convolutions share: bindings, tile constants, where an invocation works, its weights'
-// addresses and what is stored.
+// What the two sliding-window convolutions share: bindings, tile constants, where an invocation works, its weights and
+// what is stored.
 //
 // A strip is NX neighbouring columns of one row of the grid; the grid is the result for a convolution, and the result
 // divided by the stride for a transposed one. One invocation computes K channels of one strip. Strips are numbered
 // through rows and images, so that lanes are full whatever the width; under kConvTiles they are numbered through the
 // active tiles instead.
+//
+// Under kConvQuads rows are whole texels of four floats, of which one load costs a CPU device little more than one float.
 #ifndef STRANDLIGHT_NN_CONV_ROWS_GLSL
 #define STRANDLIGHT_NN_CONV_ROWS_GLSL
 
@@ -21,18 +23,24 @@ layout(constant_id = 6) const uint SH = 1;
 layout(constant_id = 7) const uint SW = 1;
 layout(constant_id = 8) const uint PH = 1;
 layout(constant_id = 9) const uint PW = 1;
-layout(constant_id = 10) const uint FLAGS = 0;
+layout(constant_id = 10) const uint PHASES = 1; // workgroups that share the row phases of a transposed convolution
+layout(constant_id = 11) const uint FLAGS = 0;
 
 layout(binding = 0, r32f) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
-layout(binding = 1, r32f) uniform readonly imageBuffer parameters;  // weights and biases
-layout(binding = 2, r32f) uniform readonly imageBuffer saved;       // kConvDerivative: the activated values
-layout(binding = 3, r32ui) uniform readonly uimageBuffer tiles;     // kConvTiles: x | y << 16 of each active tile
-layout(binding = 4, scalar) buffer Result { float result[]; };      // [N,K',H',W']
+layout(binding = 1, rgba32f) uniform readonly imageBuffer inputQuads;
+layout(binding = 2, rgba32f) uniform readonly imageBuffer packedWeights; // conv_pack.comp
+layout(binding = 3, r32f) uniform readonly imageBuffer parameters;       // biases
+layout(binding = 4, r32f) uniform readonly imageBuffer saved;            // kConvDerivative: the activated values
+layout(binding = 5, rgba32f) uniform readonly imageBuffer savedQuads;
+layout(binding = 6, r32ui) uniform readonly uimageBuffer tiles; // kConvTiles: x | y << 16 of each active tile
+layout(binding = 7, scalar) buffer Result { float result[]; };  // [N,K',H',W']
+layout(binding = 8, scalar) buffer ResultQuads { vec4 resultQuads[]; };
 layout(push_constant, scalar) uniform Push { ConvRowsPush push; };
 
 const uint kLanes = 8; // lanes that share a weight load
-const uint TAPS = KH * KW;
-const uint LOADS = (K * TAPS + kLanes - 1) / kLanes;
+const uint TAPS = KH * KW / PHASES;
+const uint TURN_TEXELS = (U * K * TAPS + 3) / 4; // of packed weights
+const uint LOADS = (TURN_TEXELS + kLanes - 1) / kLanes;
 
 struct Strip
 {
@@ -68,22 +76,30 @@ Strip stripOfInvocation(uint scaleH, uint scaleW)
     return strip;
 }
 
-uint firstChannelOfInvocation()
+// Block of channels and row phase, the latter counting faster.
+uint groupOfInvocation()
 {
-    return push.firstChannel + gl_WorkGroupID.y * K;
+    return push.firstGroup + gl_WorkGroupID.y;
 }
 
-// Address of weight (channel, input channel 0, tap); the last block repeats the last channel rather than read past the end.
-int weightAddress(uint channel, uint tap)
+// The weights of a loop turn, a texel to each lane in turn.
+vec4 dealt[LOADS];
+
+void dealWeights(int turnTexel)
 {
-    return int(push.weightOffset + min(channel, push.outChannels - 1) * push.weightStrideOut + tap);
+    if ((FLAGS & kConvShuffle) != 0)
+        [[unroll]] for (uint j = 0; j < LOADS; ++j) {
+            uint texel = min(j * kLanes + gl_SubgroupInvocationID % kLanes, TURN_TEXELS - 1);
+            dealt[j] = imageLoad(packedWeights, turnTexel + int(texel));
+        }
 }
 
-// The j-th load of this lane: the K x TAPS weights of an input channel, channel by channel, are dealt to the lanes in turn.
-int laneWeightAddress(uint j)
+float dealtWeight(int turnTexel, uint e)
 {
-    uint e = j * kLanes + gl_SubgroupInvocationID % kLanes;
-    return weightAddress(firstChannelOfInvocation() + e / TAPS, e % TAPS);
+    uint texel = e / 4;
+    if ((FLAGS & kConvShuffle) != 0)
+        return subgroupShuffle(dealt[texel / kLanes][e % 4], texel % kLanes);
+    return imageLoad(packedWeights, turnTexel + int(texel))[e % 4];
 }
 
 float biasOf(uint channel)
@@ -93,18 +109,46 @@ float biasOf(uint channel)
     return imageLoad(parameters, int(push.biasOffset + min(channel, push.outChannels - 1))).x;
 }
 
-void store(Strip strip, uint channel, uint y, uint x, float value)
+// Where an invocation stores. Read once: where control flow diverges, a push constant is eight loads on a CPU device.
+struct Target
 {
-    if (!strip.live || channel >= push.outChannels || y >= push.result.height || x >= push.result.width)
+    uint height, width, plane, channels, first, firstSaved;
+    bool live;
+    float slope;
+};
+
+Target targetOf(Strip strip)
+{
+    return Target(push.result.height, push.result.width, push.result.height * push.result.width, push.outChannels,
+                  push.result.offset + strip.image * push.result.imageStride,
+                  push.savedOffset + strip.image * push.savedImageStride, strip.live, push.slope);
+}
+
+void storeFloat(Target to, uint channel, uint y, uint x, float value)
+{
+    if (!to.live || channel >= to.channels || y >= to.height || x >= to.width)
         return;
-    uint inImage = (channel * push.result.height + y) * push.result.width + x;
-    uint at = push.result.offset + strip.image * push.result.imageStride + inImage;
+    uint inImage = channel * to.plane + y * to.width + x;
     if ((FLAGS & kConvAccumulate) != 0)
-        value += result[at];
+        value += result[to.first + inImage];
     float sign = value;
     if ((FLAGS & kConvDerivative) != 0)
-        sign = imageLoad(saved, int(push.savedOffset + strip.image * push.savedImageStride + inImage)).x;
-    result[at] = sign > 0.0 ? value : value * push.slope;
+        sign = imageLoad(saved, int(to.firstSaved + inImage)).x;
+    result[to.first + inImage] = sign > 0.0 ? value : value * to.slope;
+}
+
+// Four columns from x on, of which all exist or none.
+void storeQuad(Target to, uint channel, uint y, uint x, vec4 value)
+{
+    if (!to.live || channel >= to.channels || y >= to.height || x >= to.width)
+        return;
+    uint inImage = channel * to.plane + y * to.width + x;
+    if ((FLAGS & kConvAccumulate) != 0)
+        value += resultQuads[(to.first + inImage) / 4];
+    vec4 sign = value;
+    if ((FLAGS & kConvDerivative) != 0)
+        sign = imageLoad(savedQuads, int((to.firstSaved + inImage) / 4));
+    resultQuads[(to.first + inImage) / 4] = mix(value * to.slope, value, greaterThan(sign, vec4(0.0)));
 }
 
 #endif

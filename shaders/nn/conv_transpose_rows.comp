@@ -1,9 +1,10 @@
 // Transposed convolution, and the data gradient of a convolution, by a sliding window along rows.
 // Dumoulin and Visin. A guide to convolution arithmetic for deep learning. 2016
 //
-// A row and column of the grid is a block of SH x SW pixels of the result, one of each phase (y mod SH, x mod SW). An
-// invocation computes whole blocks, so each of the taps is used once per block and no lane multiplies by a structural
-// zero. Tap (ky,kx) of input pixel (r,c) lands on pixel (r SH - PH + ky, c SW - PW + kx). Otherwise as conv_rows.comp.
+// A row and column of the grid is a block of SH x SW pixels of the result, one of each phase (y mod SH, x mod SW). Tap
+// (ky,kx) of input pixel (r,c) lands on pixel (r SH - PH + ky, c SW - PW + kx), so each pixel meets the taps of its phase
+// only, and no lane multiplies by a structural zero. An invocation computes all column phases, and all row phases or,
+// where PHASES is SH, one of them: fewer sums for as many taps each. Otherwise as conv_rows.comp.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -13,80 +14,70 @@
 
 #include "nn/conv_rows.glsl"
 
-// Input rows that reach a block: UP before and DOWN behind the block's own. The host keeps the padding below the kernel.
+// Input rows and columns that reach a block, before and behind its own. The host keeps the padding below the kernel.
 const uint UP = (KH - 1 - PH) / SH;
 const uint DOWN = (PH + SH - 1) / SH;
 const uint LEFT = (KW - 1 - PW) / SW;
 const uint RIGHT = (PW + SW - 1) / SW;
-const uint WH = UP + 1 + DOWN;
+const uint ROWS = SH / PHASES; // of the result
+const uint ROW_TAPS = KH / PHASES;
+const uint WH = PHASES == SH ? ROW_TAPS : UP + 1 + DOWN;
 const uint WW = LEFT + NX + RIGHT;
+
+#include "nn/conv_window.glsl"
 
 void main()
 {
     Strip strip = stripOfInvocation(SH, SW);
-    uint firstChannel = firstChannelOfInvocation();
-
-    int rowAddress[WH], columnAddress[WW];
-    bool rowInside[WH], columnInside[WW];
-    [[unroll]] for (uint i = 0; i < WH; ++i) {
-        int y = int(strip.row + i) - int(UP);
-        rowInside[i] = uint(y) < push.source.height;
-        rowAddress[i] = clamp(y, 0, int(push.source.height) - 1) * int(push.source.width);
-    }
-    [[unroll]] for (uint i = 0; i < WW; ++i) {
-        int x = int(strip.column + i) - int(LEFT);
-        columnInside[i] = uint(x) < push.source.width;
-        columnAddress[i] = clamp(x, 0, int(push.source.width) - 1);
-    }
-    int laneAddress[LOADS];
-    [[unroll]] for (uint j = 0; j < LOADS; ++j)
-        laneAddress[j] = laneWeightAddress(j);
-
-    float sum[K][SH][NX * SW];
+    Target target = targetOf(strip);
+    uint group = groupOfInvocation();
+    uint phase = group % PHASES;
+    int firstRow = PHASES == SH ? int((phase + PH) / SH) - int(ROW_TAPS - 1) : -int(UP);
+    placeWindow(int(strip.row) + firstRow, int(strip.column), strip.image);
+    float sum[K][ROWS][NX * SW];
     [[unroll]] for (uint k = 0; k < K; ++k)
-        [[unroll]] for (uint y = 0; y < SH; ++y)
+        [[unroll]] for (uint y = 0; y < ROWS; ++y)
             [[unroll]] for (uint x = 0; x < NX * SW; ++x)
                 sum[k][y][x] = 0.0;
 
-    int plane = int(push.source.height * push.source.width);
-    int source = int(push.source.offset + strip.image * push.source.imageStride);
-    int weights = 0;
-    for (uint c = 0; c < push.inChannels; c += U) {
+    uint turns = push.inChannels / U;
+    int planeLoads = int(push.source.height * push.source.width / SPAN);
+    int plane = 0;
+    int weights = int(group * turns * TURN_TEXELS);
+    for (uint turn = 0; turn < turns; ++turn) {
+        dealWeights(weights);
         [[unroll]] for (uint u = 0; u < U; ++u) {
-            float dealt[LOADS];
-            if ((FLAGS & kConvShuffle) != 0)
-                [[unroll]] for (uint j = 0; j < LOADS; ++j)
-                    dealt[j] = imageLoad(parameters, weights + laneAddress[j]).x;
-            float window[WH][WW];
-            [[unroll]] for (uint y = 0; y < WH; ++y)
-                [[unroll]] for (uint x = 0; x < WW; ++x) {
-                    float loaded = imageLoad(inputTensor, source + rowAddress[y] + columnAddress[x]).x;
-                    window[y][x] = rowInside[y] && columnInside[x] ? loaded : 0.0;
-                }
+            loadWindow(plane);
             [[unroll]] for (uint k = 0; k < K; ++k)
                 [[unroll]] for (uint t = 0; t < TAPS; ++t) {
-                    uint e = k * TAPS + t;
-                    float weight;
-                    if ((FLAGS & kConvShuffle) != 0)
-                        weight = subgroupShuffle(dealt[e / kLanes], e % kLanes);
-                    else
-                        weight = imageLoad(parameters, weights + weightAddress(firstChannel + k, t)).x;
+                    float weight = dealtWeight(weights, (u * K + k) * TAPS + t);
                     // The phase this tap lands on, and which row and column of the window it comes from.
                     uint ky = t / KW, kx = t % KW;
-                    uint phaseY = (ky + (SH - 1) * PH) % SH, phaseX = (kx + (SW - 1) * PW) % SW;
-                    uint fromY = (phaseY + PH + UP * SH - ky) / SH, fromX = (phaseX + PW + LEFT * SW - kx) / SW;
+                    uint phaseY = PHASES == SH ? 0 : (ky + (SH - 1) * PH) % SH;
+                    uint fromY = PHASES == SH ? ROW_TAPS - 1 - ky : (phaseY + PH + UP * SH - ky) / SH;
+                    uint phaseX = (kx + (SW - 1) * PW) % SW;
+                    uint fromX = (phaseX + PW + LEFT * SW - kx) / SW;
                     [[unroll]] for (uint n = 0; n < NX; ++n)
                         sum[k][phaseY][n * SW + phaseX] += weight * window[fromY][fromX + n];
                 }
-            source += plane;
-            weights += int(push.weightStrideIn);
+            plane += planeLoads;
         }
+        weights += int(TURN_TEXELS);
     }
 
+    uint firstChannel = group / PHASES * K;
+    uint firstY = strip.row * SH + phase, firstX = strip.column * SW;
     [[unroll]] for (uint k = 0; k < K; ++k) {
         float bias = biasOf(firstChannel + k);
-        [[unroll]] for (uint y = 0; y < SH; ++y)
-            [[unroll]] for (uint x = 0; x < NX * SW; ++x)
-                store(strip, firstChannel + k, strip.row * SH + y, strip.column * SW + x, sum[k][y][x] + bias);
+        [[unroll]] for (uint y = 0; y < ROWS; ++y) {
+            if ((FLAGS & kConvQuads) != 0) {
+                [[unroll]] for (uint x = 0; x < NX * SW; x += 4)
+                    storeQuad(target, firstChannel + k, firstY + y, firstX + x,
+                              vec4(sum[k][y][x], sum[k][y][x + 1], sum[k][y][x + 2], sum[k][y][x + 3]) + bias);
+            } else {
+                [[unroll]] for (uint x = 0; x < NX * SW; ++x)
+                    storeFloat(target, firstChannel + k, firstY + y, firstX + x, sum[k][y][x] + bias);
+            }
+        }
     }
 }

@@ -25,6 +25,7 @@ STRANDLIGHT_CONST(uint) kConvDerivative = 4u; // x (saved > 0 ? 1 : slope): back
 STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; needs 8 lanes or more
 
 STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
+STRANDLIGHT_CONST(uint) kConvQuads = 32u;     // rows are whole texels of four floats
 
 // Side of a TileList's square tiles, in pixels of the layer's output: a multiple of the register tiles of the row kernels.
 STRANDLIGHT_CONST(uint) kTileSide = 8u;
@@ -75,14 +76,29 @@ struct ConvRowsPush
     uint savedImageStride;
     uint inChannels;
     uint outChannels;
-    uint weightOffset;
-    uint weightStrideOut;
-    uint weightStrideIn;
     uint biasOffset;
-    uint firstChannel; // of this dispatch
-    uint firstStrip;   // this dispatch works on strips [firstStrip, endStrip)
+    uint firstGroup; // of this dispatch: block of channels x row phases + phase
+    uint firstStrip; // this dispatch works on strips [firstStrip, endStrip)
     uint endStrip;
     float slope;
+};
+
+// Weights for those two, by conv_pack.comp.
+struct ConvPackPush
+{
+    uint texels; // in all
+    uint weightOffset;
+    uint weightStrideOut; // floats between the weights of neighbouring output channels
+    uint weightStrideIn;
+    uint outChannels;
+    uint channels;   // of a block
+    uint turns;      // loop turns
+    uint turnInputs; // input channels of a turn
+    uint turnTexels;
+    uint taps; // of a row phase, of which there are
+    uint phases;
+    uint kernelWidth;
+    uint paddingHeight;
 };
 
 // conv_weight_tile.comp: threads of a workgroup, and channels a of a thread.
@@ -233,7 +249,7 @@ STRANDLIGHT_SHARED_END
 
 #ifdef __cplusplus
 static_assert(sizeof(strandlight::gpu::ConvPush) == 104);
-static_assert(sizeof(strandlight::gpu::ConvRowsPush) == 80);
+static_assert(sizeof(strandlight::gpu::ConvRowsPush) == 68);
 static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 80);
 #endif
 

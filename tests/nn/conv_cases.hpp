@@ -76,6 +76,12 @@ inline std::vector<ConvCase> rowConvCases()
         makeConvCase({2, 3, 7, 33}, 5, {4, 4}, {2, 2}, {1, 1}, {0, 1}),
         makeConvCase({1, 9, 10, 43}, 24, {2, 2}, {2, 2}, {0, 0}, {1, 1}),
         makeConvCase({1, 24, 3, 47}, 10, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
+        // Whole quads, the last strip cut.
+        makeConvCase({2, 9, 5, 20}, 17, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({2, 6, 9, 40}, 18, {3, 3}, {2, 2}, {1, 1}, {1, 1}),
+        makeConvCase({1, 10, 8, 56}, 19, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
+        makeConvCase({2, 12, 6, 24}, 20, {2, 2}, {2, 2}, {0, 0}, {0, 0}),
+        makeConvCase({1, 12, 5, 20}, 21, {1, 1}, {1, 1}, {0, 0}, {0, 0}),
     };
 }
 
