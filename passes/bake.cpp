@@ -12,6 +12,7 @@
 #include "passes/light_field_baselines.hpp"
 #include "passes/lightfield_capture.hpp"
 #include "passes/sg_fit.hpp"
+#include "passes/texel_gloss.hpp"
 
 namespace strandlight {
 
@@ -150,9 +151,12 @@ void captureAndFit(Context& context, const Scene& scene, const BakeSettings& set
 
     // Lobes of the light that the scene sends back
     start = Clock::now();
+    const std::vector<float> gloss =
+        settings.lobeError > 0.0f ? texelGloss(scene, bake.atlas) : std::vector<float>();
     {
         const FitSettings wanted = fitSettings(settings, LightSet::Radiance);
-        const FitProblem problem = buildFitProblem(bake.atlas, images, LightSet::Radiance, wanted);
+        FitProblem problem = buildFitProblem(bake.atlas, images, LightSet::Radiance, wanted);
+        problem.gloss = gloss;
         bake.radiance = saver.state.radiance
                             ? *saver.state.radiance
                             : fit(context, problem, wanted, saver.state.radianceFit, saver);
@@ -164,8 +168,8 @@ void captureAndFit(Context& context, const Scene& scene, const BakeSettings& set
         saver.state.radianceFit.reset();
         saver.save();
         const FitSettings wanted = fitSettings(settings, LightSet::Environment);
-        const FitProblem problem =
-            buildFitProblem(bake.atlas, images, LightSet::Environment, wanted);
+        FitProblem problem = buildFitProblem(bake.atlas, images, LightSet::Environment, wanted);
+        problem.gloss = gloss;
         bake.environment = fit(context, problem, wanted, saver.state.environmentFit, saver);
         numbers.environmentRmse = rmseAtTexels(problem, *bake.environment);
     }

@@ -6,6 +6,7 @@
 #include "engine/base/progress.hpp"
 #include "passes/fit_probes.hpp"
 #include "passes/sg_fit.hpp"
+#include "passes/texel_gloss.hpp"
 
 namespace strandlight {
 
@@ -15,7 +16,8 @@ FitReport studyFits(Context& context, const Scene& scene, const FitStudySettings
     GpuScene device = uploadScene(context, scene);
     const CpuLightfield field =
         captureTexels(context, scene, device, atlas, atlas.texels, settings.capture, "capture");
-    const FitProblem problem = buildFitProblem(atlas, field, LightSet::Radiance, settings.fit);
+    FitProblem problem = buildFitProblem(atlas, field, LightSet::Radiance, settings.fit);
+    problem.gloss = texelGloss(scene, atlas);
 
     CaptureSettings between = settings.capture;
     between.seed += 1; // noise of its own

@@ -30,6 +30,8 @@ struct GiChoice
     std::uint32_t lightfield = BakeSettings{}.lightfieldSize;
     std::uint32_t samples = BakeSettings{}.samplesPerDirection;
     GiStorage storage = GiStorage::Packed;
+    float lobeError = BakeSettings{}.lobeError; // of a fit whose lobes are dropped
+    std::uint32_t lobeTile = BakeSettings{}.lobeTile;
     SpecularModel specular = RenderSettings{}.specular;
     DiffuseModel diffuse = RenderSettings{}.diffuse;
 };

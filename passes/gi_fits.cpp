@@ -6,6 +6,7 @@
 #include "engine/base/error.hpp"
 #include "passes/fit_probes.hpp"
 #include "passes/sg_fit.hpp"
+#include "passes/texel_gloss.hpp"
 
 namespace strandlight {
 namespace {
@@ -25,7 +26,8 @@ std::string captureKey(const GiChoice& c)
 
 std::string fitKey(const GiChoice& c)
 {
-    return captureKey(c) + " " + std::to_string(c.lobes) + " " + c.representation;
+    return captureKey(c) + " " + std::to_string(c.lobes) + " " + c.representation + " " +
+           std::to_string(c.lobeError) + " " + std::to_string(c.lobeTile);
 }
 
 LightFieldModel rival(const FitProblem& problem, const GiChoice& choice)
@@ -68,6 +70,7 @@ const GiCapture& GiFits::captured(const GiChoice& choice)
     capture.captureSeconds += secondsSince(start);
     FitSettings fit;
     capture.problem = buildFitProblem(capture.atlas, images, LightSet::Radiance, fit);
+    capture.problem.gloss = texelGloss(scene_, capture.atlas);
     if (!images.environment.empty()) {
         start = Clock::now();
         fit.lobes = settings_.bake.environmentLobes;
@@ -105,7 +108,10 @@ LightFieldModel GiFits::fitFree(const GiChoice& choice, std::vector<GiTracePoint
     const GiCapture& capture = captured(choice);
     FitProblem problem = capture.problem;
     problem.lobes = choice.lobes;
+    problem.tiles = lobeTiles(capture.atlas, choice.lobeTile);
     FitSettings fit;
+    fit.lobeError = choice.lobeError;
+    fit.lobeTile = choice.lobeTile;
     fit.mode = fitModeFrom(choice.representation);
     fit.lobes = choice.lobes;
     fit.steps = settings_.bake.steps;

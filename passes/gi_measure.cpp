@@ -7,15 +7,22 @@
 #include "engine/base/image_metrics.hpp"
 #include "engine/base/progress.hpp"
 #include "passes/gi_truth.hpp"
+#include "passes/sgl_lobe.hpp"
 
 namespace strandlight {
 namespace {
 
-double bytesPerTexel(const GiChoice& choice, const LightFieldModel& model)
+// With the masks that say which lobes a tile keeps.
+double bytesPerTexel(const GiChoice& choice, const GiCapture& capture, const LightFieldModel& model)
 {
+    if (!isFree(choice))
+        return model.bytesPerTexel;
     constexpr double kBytesPerLobe[] = {28.0, 12.0, 8.0};
-    return isFree(choice) ? kBytesPerLobe[std::size_t(choice.storage)] * choice.lobes
-                          : model.bytesPerTexel;
+    double bytes = kBytesPerLobe[std::size_t(choice.storage)] * double(model.lobes->keptCount());
+    if (!model.lobes->kept.empty())
+        bytes +=
+            double(sglMaskBytes(choice.lobes)) * lobeTiles(capture.atlas, choice.lobeTile).count;
+    return bytes / capture.problem.texelCount();
 }
 
 double shadingMilliseconds(const FrameResult& frame)
@@ -47,6 +54,7 @@ struct GiMeasure::State
     GiFits fits;
     CpuImage truth;
     FrameResult frame;
+    BakeSavings savings;
 
     void draw(const GiChoice& choice, const SgField& lobes, GiRow& row);
 };
@@ -58,6 +66,7 @@ void GiMeasure::State::draw(const GiChoice& choice, const SgField& lobes, GiRow&
     bake.atlas = capture.atlas;
     bake.radiance = lobes;
     bake.environment = capture.environment;
+    savings = bakeSavings(bake);
     RenderSettings wanted;
     wanted.width = settings.width;
     wanted.height = settings.height;
@@ -102,7 +111,7 @@ GiRow GiMeasure::measure(const std::string& knob, const GiChoice& choice)
     const LightFieldModel& model = state_->fits.fitted(choice);
     GiRow row{.knob = knob, .choice = choice};
     row.texels = capture.problem.texelCount();
-    row.bytesPerTexel = bytesPerTexel(choice, model);
+    row.bytesPerTexel = bytesPerTexel(choice, capture, model);
     row.captureSeconds = capture.captureSeconds;
     row.fitSeconds = model.seconds;
     row.bakeSeconds = capture.captureSeconds + capture.environmentSeconds + model.seconds;
@@ -136,6 +145,11 @@ const CpuImage& GiMeasure::truth() const
 const FrameResult& GiMeasure::lastFrame() const
 {
     return state_->frame;
+}
+
+const BakeSavings& GiMeasure::lastSavings() const
+{
+    return state_->savings;
 }
 
 } // namespace strandlight

@@ -11,6 +11,7 @@
 
 #include "engine/base/image.hpp"
 #include "passes/gi_fits.hpp"
+#include "passes/savings.hpp"
 
 namespace strandlight {
 
@@ -60,6 +61,7 @@ public:
 
     const CpuImage& truth() const;
     const FrameResult& lastFrame() const; // of the last measured choice that can be drawn
+    const BakeSavings& lastSavings() const;
 
 private:
     struct State;

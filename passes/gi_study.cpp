@@ -34,6 +34,15 @@ void addLobes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
         }
 }
 
+void addDropped(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
+{
+    for (const float lobeError : sweep.lobeErrors) {
+        GiChoice choice = sweep.base;
+        choice.lobeError = lobeError;
+        rows.push_back(measure.measure("dropped lobes", choice));
+    }
+}
+
 void addSizes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 {
     const auto add = [&](const char* knob, const std::vector<std::uint32_t>& values,
@@ -69,8 +78,9 @@ void addShading(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 GiSweep smallGiSweep()
 {
     GiSweep sweep;
-    sweep.base.atlas = 56; // cornell_lambert has 10 charts at 40 texels a side, 69 at 48
+    sweep.base.atlas = 56; // at 40 texels a side most charts share a texel
     sweep.lobes = {2, 4, 7, 8, 12, 16};
+    sweep.lobeErrors = {0.05f, 0.08f};
     sweep.atlases = {48, 56, 72};
     sweep.lightfields = {8, 12, 16};
     sweep.samples = {1, 2, 4, 8};
@@ -103,9 +113,11 @@ GiStudy studyGi(Context& context, const Scene& scene, const GiSweep& sweep,
     study.rows.push_back(measure.measure("base", sweep.base));
     study.truth = measure.truth();
     study.frame = measure.lastFrame();
+    study.savings = measure.lastSavings();
     study.picture = study.frame.radiance;
     addRepresentations(measure, sweep, study.rows);
     addLobes(measure, sweep, study.rows);
+    addDropped(measure, sweep, study.rows);
     addSizes(measure, sweep, study.rows);
     addShading(measure, sweep, study.rows);
     return study;

@@ -39,7 +39,7 @@ FramePlan planFrame(const Scene& scene, const GpuScene& gpuScene, const SgTextur
     const bool diffuseView = final || view == RenderView::Diffuse;
     const bool specularView = final || view == RenderView::Specular;
     FramePlan plan;
-    plan.inspect = view == RenderView::Lobes || view == RenderView::Atlas;
+    plan.inspect = view >= RenderView::Lobes;
     plan.emission = final;
     const auto need = [&](bool& slot, bool viewPart, const char* what,
                           std::initializer_list<std::pair<bool, const char*>> sceneParts) {

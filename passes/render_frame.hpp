@@ -20,7 +20,8 @@ enum class RenderView : std::uint32_t
     Diffuse = gpu::kViewDiffuse,   // diffuse reflection alone
     Specular = gpu::kViewSpecular, // glossy reflection alone
     Lobes = gpu::kViewLobes,       // the light field in a perfect mirror
-    Atlas = gpu::kViewAtlas        // the atlas's texels
+    Atlas = gpu::kViewAtlas,       // the atlas's texels
+    Count = gpu::kViewCount        // lobes of the radiance that shading loops over, a number
 };
 
 struct RenderSettings

@@ -82,11 +82,10 @@ void countClamps(const FitProblem& problem, const SgField& field, FitStatistics&
         problem.scales.begin(), problem.scales.end(), [](float s) { return s < 0.0f; }));
 }
 
-// Lobes that can be missed are dropped, and the others find new places together, in small steps.
-SgField dropLobes(Context& context, const FitProblem& problem, const FitSettings& settings,
-                  SgField field, const FitState& before, const FitCheckpoint* checkpoint)
+// The kept lobes find new places together, in small steps.
+SgField refitKept(Context& context, const FitProblem& problem, const FitSettings& settings,
+                  const SgField& field, const FitState& before, const FitCheckpoint* checkpoint)
 {
-    pruneLobes(problem, settings, field);
     FitSettings refit = settings;
     refit.steps = settings.refitSteps;
     refit.learningRate = 0.3f * settings.learningRate;
@@ -100,13 +99,13 @@ SgField dropLobes(Context& context, const FitProblem& problem, const FitSettings
     runToEnd(fit, problem, refit, 0.0, &outer, nullptr);
     SgField kept = fieldFromState(problem, fit.state());
     kept.tileSize = field.tileSize;
-    kept.kept = std::move(field.kept);
+    kept.kept = field.kept;
     return kept;
 }
 
-SgField runDirect(Context& context, const FitProblem& problem, const FitSettings& settings,
-                  const FitState& start, const FitCheckpoint* checkpoint, FitWatch* watch,
-                  FitStatistics& statistics)
+FitState runDirect(Context& context, const FitProblem& problem, const FitSettings& settings,
+                   const FitState& start, const FitCheckpoint* checkpoint, FitWatch* watch,
+                   FitStatistics& statistics)
 {
     if (start.parameters.size() !=
         std::size_t(problem.lobes) * problem.texelCount() * gpu::kSgFitLobeFloats)
@@ -119,10 +118,7 @@ SgField runDirect(Context& context, const FitProblem& problem, const FitSettings
     state.firstLoss = statistics.firstLoss;
     statistics.lastLoss = fit.loss();
     statistics.skippedSteps = state.skippedSteps;
-    SgField field = fieldFromState(problem, state);
-    return settings.lobeError > 0.0f
-               ? dropLobes(context, problem, settings, std::move(field), state, checkpoint)
-               : field;
+    return state;
 }
 
 } // namespace
@@ -160,24 +156,32 @@ SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings&
     field.lobeCount = problem.lobes;
     if (problem.texelCount() > 0) {
         const FitState* resume = checkpoint ? checkpoint->resume : nullptr;
+        FitState state;
         if (settings.mode == FitMode::Direct) {
-            field = runDirect(context, problem, settings,
+            state = runDirect(context, problem, settings,
                               resume ? *resume : startFit(problem, settings.start), checkpoint,
                               watch, numbers);
         } else {
             // The encoder is trained again when a bake is resumed: it is the same to the last bit.
             if (settings.mode == FitMode::Cnn || !resume)
                 field = fitLobesByCnn(context, problem, settings, numbers, watch);
-            if (settings.mode == FitMode::Cnn && settings.lobeError > 0.0f)
-                pruneLobes(problem, settings, field);
             FitSettings refine = settings;
             refine.coarseSmoothness = refine.smoothness; // the encoder has found the places
             if (settings.mode == FitMode::CnnRefine)
-                field =
+                state =
                     runDirect(context, problem, refine, resume ? *resume : startFit(problem, field),
                               checkpoint, watch, numbers);
         }
+        if (settings.mode != FitMode::Cnn)
+            field = fieldFromState(problem, state);
         numbers.heldIrradiance = matchIrradiance(problem, field);
+        if (settings.lobeError > 0.0f) {
+            const SgField whole = field;
+            pruneLobes(problem, settings, field);
+            if (settings.mode != FitMode::Cnn)
+                field = refitKept(context, problem, settings, field, state, checkpoint);
+            matchIrradianceOf(problem, whole, field);
+        }
         countClamps(problem, field, numbers);
     }
     numbers.seconds = secondsSince(begin) - (watch ? watch->secondsLooking() : 0.0);

@@ -45,7 +45,8 @@ struct FitProblem
         images; // [direction, texel] RGB9E5: neighbouring lanes read neighbouring words
     std::vector<float> scales; // [texel] mean radiance over solid angle, negative: no image
     std::uint64_t raisedScales = 0;
-    LobeTiles tiles; // of settings.lobeTile
+    LobeTiles tiles;          // of settings.lobeTile
+    std::vector<float> gloss; // [texel] texelGloss(), for lobes that are dropped; empty: 0
     float minimumLogSharpness = 0.0f;
     float maximumLogSharpness = 0.0f;
 

@@ -60,6 +60,24 @@ void averageOverNeighbours(const FitCells& cells, std::vector<glm::dvec3>& value
     values = std::move(next); // sums, not means: only the ratio of two such arrays is used
 }
 
+// Scales amplitudes by wanted / given. Returns how many factors were held.
+std::uint64_t scaleAmplitudes(SgField& field, const std::vector<glm::dvec3>& wanted,
+                              const std::vector<glm::dvec3>& given)
+{
+    std::uint64_t held = 0;
+    for (std::size_t texel = 0; texel < given.size(); ++texel)
+        for (int channel = 0; channel < 3; ++channel) {
+            if (!(given[texel][channel] > 0.0))
+                continue;
+            const double factor = wanted[texel][channel] / given[texel][channel];
+            const double kept = std::clamp(factor, 1.0 / kLargestFactor, kLargestFactor);
+            held += kept != factor ? 1 : 0;
+            for (std::uint32_t k = 0; k < field.lobeCount; ++k)
+                field.lobes[texel * field.lobeCount + k].amplitude[channel] *= float(kept);
+        }
+    return held;
+}
+
 } // namespace
 
 std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field, std::uint32_t rounds)
@@ -71,18 +89,12 @@ std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field, std::ui
         averageOverNeighbours(problem.cells, wanted);
         averageOverNeighbours(problem.cells, given);
     }
-    std::uint64_t held = 0;
-    for (std::size_t texel = 0; texel < problem.texelCount(); ++texel)
-        for (int channel = 0; channel < 3; ++channel) {
-            if (!(given[texel][channel] > 0.0))
-                continue;
-            const double factor = wanted[texel][channel] / given[texel][channel];
-            const double kept = std::clamp(factor, 1.0 / kLargestFactor, kLargestFactor);
-            held += kept != factor ? 1 : 0;
-            for (std::uint32_t k = 0; k < field.lobeCount; ++k)
-                field.lobes[texel * field.lobeCount + k].amplitude[channel] *= float(kept);
-        }
-    return held;
+    return scaleAmplitudes(field, wanted, given);
+}
+
+void matchIrradianceOf(const FitProblem& problem, const SgField& whole, SgField& field)
+{
+    scaleAmplitudes(field, lobeIrradiance(problem, whole), lobeIrradiance(problem, field));
 }
 
 } // namespace strandlight

@@ -17,4 +17,8 @@ namespace strandlight {
 // how many were held. Deterministic, on the CPU.
 std::uint64_t matchIrradiance(const FitProblem& problem, SgField& field, std::uint32_t rounds = 2);
 
+// The same for lobes of which some were dropped: each texel sends what those of `whole` send. A
+// texel for itself: `whole` is smooth already.
+void matchIrradianceOf(const FitProblem& problem, const SgField& whole, SgField& field);
+
 } // namespace strandlight

@@ -53,7 +53,7 @@ struct FitSettings
     // fraction. 0: every texel keeps all lobes.
     float lobeError = 0.0f;
     std::uint32_t lobeTile = 2;     // atlas texels a side that keep the same lobes
-    std::uint32_t refitSteps = 150; // of those that are kept, in the direct modes
+    std::uint32_t refitSteps = 300; // of those that are kept, in the direct modes
     std::uint32_t seed = 1;
 };
 

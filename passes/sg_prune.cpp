@@ -175,17 +175,29 @@ std::vector<Removal> orderRemovals(Tile tile)
     return order;
 }
 
-// How many lobes go in each tile: always the one that costs least per texel, while the budget
-// lasts.
-std::vector<std::size_t> spendBudget(const std::vector<std::vector<Removal>>& orders,
-                                     const std::vector<std::size_t>& texels, double budget)
+// How much a picture minds an error of this texel's lobes, which is measured against its mean
+// radiance. The root is half way to the radiance itself: a dark corner matters less than a lit
+// wall. A mirror shows every lobe, a rough surface their sum. Without the gloss FLIP of the
+// built-in room grows three times as much for the same bytes, without the root the error at texels
+// by 3 % more.
+double visibility(const FitProblem& problem, std::uint32_t texel)
 {
-    using Next = std::tuple<double, std::size_t>; // cost per texel, tile
+    constexpr double kGloss = 100.0;
+    const double gloss = problem.gloss.empty() ? 0.0 : double(problem.gloss[texel]);
+    return std::sqrt(std::abs(double(problem.scales[texel]))) * (1.0 + kGloss * gloss);
+}
+
+// How many lobes go in each tile: always the one that is missed least for what it frees, while the
+// budget lasts. `worth`: of a tile's error, per texel.
+std::vector<std::size_t> spendBudget(const std::vector<std::vector<Removal>>& orders,
+                                     const std::vector<double>& worth, double budget)
+{
+    using Next = std::tuple<double, std::size_t>; // worth, tile
     std::priority_queue<Next, std::vector<Next>, std::greater<>> queue;
     std::vector<std::size_t> count(orders.size(), 0);
     const auto offer = [&](std::size_t tile) {
         if (count[tile] < orders[tile].size())
-            queue.emplace(orders[tile][count[tile]].cost / double(texels[tile]), tile);
+            queue.emplace(orders[tile][count[tile]].cost * worth[tile], tile);
     };
     for (std::size_t tile = 0; tile < orders.size(); ++tile)
         offer(tile);
@@ -212,17 +224,20 @@ void pruneLobes(const FitProblem& problem, const FitSettings& settings, SgField&
 
     // A tile's removals do not depend on other tiles: only their order and costs are kept.
     std::vector<std::vector<Removal>> orders;
-    std::vector<std::size_t> sizes;
+    std::vector<double> worth;
     double squaredError = 0.0;
     for (const std::vector<std::uint32_t>& members : texels) {
         Tile tile(problem, settings, field, members);
         squaredError += tile.squaredError();
-        sizes.push_back(members.size());
+        double sum = 0.0;
+        for (const std::uint32_t t : members)
+            sum += visibility(problem, t);
+        worth.push_back(sum / double(members.size() * members.size()));
         orders.push_back(orderRemovals(std::move(tile)));
     }
     const double growth = 1.0 + double(settings.lobeError);
     const std::vector<std::size_t> dropped =
-        spendBudget(orders, sizes, squaredError * (growth * growth - 1.0));
+        spendBudget(orders, worth, squaredError * (growth * growth - 1.0));
 
     field.tileSize = settings.lobeTile;
     field.kept.assign(problem.texelCount(), 0u);

@@ -13,7 +13,8 @@ namespace strandlight {
 
 // Drops the cheapest lobes of all tiles (problem.tiles) until the root of the summed squared error
 // would grow by more than the fraction `lobeError`. The error is the fit's: relative to each
-// texel's mean radiance, bright directions softened. Amplitudes of the kept lobes take over what
+// texel's mean radiance, bright directions softened. Cheapest is what a picture misses least: dark
+// and rough texels (problem.gloss) give up lobes first. Amplitudes of the kept lobes take over what
 // they can. Lobes without light go at any `lobeError`: a tile that receives none keeps none. On the
 // CPU, deterministic.
 void pruneLobes(const FitProblem& problem, const FitSettings& settings, SgField& field);

@@ -85,7 +85,9 @@ ImageId addSgEnvironmentPass(RenderGraph& graph, const GBufferIds& gbuffer, cons
 ImageId addSgViewPass(RenderGraph& graph, const GBufferIds& gbuffer, const SgLobeIds& lobes,
                       glm::vec3 eye, std::uint32_t view, ImageId lit)
 {
-    PassBuilder pass = graph.addComputePass(view == gpu::kViewAtlas ? "view atlas" : "view lobes");
+    PassBuilder pass = graph.addComputePass(view == gpu::kViewAtlas   ? "view atlas"
+                                            : view == gpu::kViewCount ? "view count"
+                                                                      : "view lobes");
     readGBuffer(pass, gbuffer);
     readLobes(pass, lobes);
     const ImageId out = pass.write(lit);

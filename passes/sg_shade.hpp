@@ -43,7 +43,8 @@ ImageId addSgEnvironmentPass(RenderGraph& graph, const GBufferIds& gbuffer, cons
                              ImageId table, const EnvironmentIds& environment, glm::vec3 eye,
                              SpecularModel model, ImageId lit);
 
-// `view`: kViewLobes (the light field in a perfect mirror) or kViewAtlas (its texels).
+// `view`: kViewLobes (the light field in a perfect mirror), kViewAtlas (its texels) or kViewCount
+// (how many lobes shading loops over).
 ImageId addSgViewPass(RenderGraph& graph, const GBufferIds& gbuffer, const SgLobeIds& lobes,
                       glm::vec3 eye, std::uint32_t view, ImageId lit);
 

@@ -80,32 +80,47 @@ std::vector<SkipCase> makeCases(std::uint32_t strands)
     return cases;
 }
 
-void drawFrame(Context& context, const SkipCase& c, const SgBake& bake,
-               const SkipSettings& settings, SkipRow& row)
+struct DrawnFrame
+{
+    std::vector<PassTiming> timings;
+    std::size_t skipped = 0;
+};
+
+DrawnFrame drawFrame(Context& context, const SkipCase& c, GpuScene& device, const SgBake& bake,
+                     const SkipSettings& settings)
 {
     const Camera camera = defaultCamera(c.scene);
-    GpuScene device = c.scene.triangles.empty() ? GpuScene() : uploadScene(context, c.scene);
-    row.frameMilliseconds = HUGE_VAL;
-    for (std::uint32_t i = 0; i <= settings.repeats; ++i) { // drivers compile at first use
-        const FrameResult frame = renderFrame(context, c.scene, device, bake, camera,
-                                              {.width = settings.width, .height = settings.height});
-        HairRenderSettings over;
-        over.width = settings.width;
-        over.height = settings.height;
-        over.background = &frame.radiance;
-        const HairFrame hair = renderHair(context, c.hair, &c.scene, camera, over);
-        row.passes.clear();
-        double milliseconds = 0.0;
-        for (const auto* timings : {&frame.timings, &hair.timings})
-            for (const PassTiming& timing : *timings) {
-                row.passes.push_back(timing.pass);
-                milliseconds += timing.milliseconds;
-            }
-        if (i > 0)
-            row.frameMilliseconds = std::min(row.frameMilliseconds, milliseconds);
-        else
-            row.skipped += frame.skipped.size() + hair.skipped.size();
+    const FrameResult frame = renderFrame(context, c.scene, device, bake, camera,
+                                          {.width = settings.width, .height = settings.height});
+    HairRenderSettings over;
+    over.width = settings.width;
+    over.height = settings.height;
+    over.background = &frame.radiance;
+    const HairFrame hair = renderHair(context, c.hair, &c.scene, camera, over);
+    DrawnFrame drawn{frame.timings, frame.skipped.size() + hair.skipped.size()};
+    drawn.timings.insert(drawn.timings.end(), hair.timings.begin(), hair.timings.end());
+    return drawn;
+}
+
+// One bake and one frame, by their counters.
+void check(const SkipCase& c, const SgBake& bake, const BakeStatistics& statistics,
+           const DrawnFrame& frame, SkipRow& row)
+{
+    row.captureDispatches = statistics.captureDispatches;
+    row.lobes = bake.radiance.keptCount();
+    row.environmentLobes = bake.environment ? bake.environment->keptCount() : 0;
+    row.skipped = statistics.skipped.size() + frame.skipped;
+    for (const PassTiming& timing : frame.timings) {
+        row.passes.push_back(timing.pass);
+        if (std::any_of(c.unneeded.begin(), c.unneeded.end(), [&](const std::string& part) {
+                return timing.pass.find(part) != std::string::npos;
+            }))
+            row.wrong.push_back(timing.pass);
     }
+    if (!sendsLight(c.scene) && statistics.captureDispatches > 0)
+        row.wrong.push_back("capture");
+    if (!c.scene.environment && row.environmentLobes > 0)
+        row.wrong.push_back("fit of the environment");
 }
 
 SkipRow measureCase(const ContextSettings& settings, const SkipCase& c, const SkipSettings& s)
@@ -118,26 +133,27 @@ SkipRow measureCase(const ContextSettings& settings, const SkipCase& c, const Sk
     wanted.samplesPerDirection = s.samples;
     wanted.steps = s.steps;
     BakeStatistics statistics;
-    SgBake bake;
-    row.bakeSeconds = HUGE_VAL;
+    SgBake bake = bakeScene(context, c.scene, wanted, &statistics);
+    GpuScene device = c.scene.triangles.empty() ? GpuScene() : uploadScene(context, c.scene);
+    check(c, bake, statistics, drawFrame(context, c, device, bake, s), row);
+    row.pipelines = context.pipelinesCreated();
+    if (!row.wrong.empty())
+        return row;
+
+    row.bakeSeconds = row.frameMilliseconds = HUGE_VAL;
     for (std::uint32_t i = 0; i < s.repeats; ++i) {
         const auto start = std::chrono::steady_clock::now();
-        bake = bakeScene(context, c.scene, wanted, &statistics);
+        bake = bakeScene(context, c.scene, wanted);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         row.bakeSeconds = std::min(row.bakeSeconds, seconds.count());
     }
-    row.captureDispatches = statistics.captureDispatches;
-    row.lobes = bake.radiance.keptCount();
-    row.environmentLobes = bake.environment ? bake.environment->keptCount() : 0;
-    row.skipped = statistics.skipped.size();
-    drawFrame(context, c, bake, s, row);
-    row.pipelines = context.pipelinesCreated();
+    for (std::uint32_t i = 0; i < s.repeats; ++i) {
+        double milliseconds = 0.0;
+        for (const PassTiming& timing : drawFrame(context, c, device, bake, s).timings)
+            milliseconds += timing.milliseconds;
+        row.frameMilliseconds = std::min(row.frameMilliseconds, milliseconds);
+    }
     row.peakBytes = context.peakBytesAllocated();
-    for (const std::string& pass : row.passes)
-        if (std::any_of(c.unneeded.begin(), c.unneeded.end(), [&](const std::string& part) {
-                return pass.find(part) != std::string::npos;
-            }))
-            row.wrong.push_back(pass);
     return row;
 }
 

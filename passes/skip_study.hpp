@@ -13,15 +13,15 @@ struct SkipRow
 {
     std::string name;                // "full", "without hair", ...
     std::vector<std::string> passes; // of a frame
-    std::vector<std::string> wrong;  // of those, what the scene does not need; must be empty
+    std::vector<std::string> wrong;  // what ran and the scene does not need: then nothing is timed
     std::size_t skipped = 0;         // kinds of light or of passes, in bake and frame
     std::uint32_t captureDispatches = 0;
     std::uint32_t pipelines = 0; // made by bake and frame
     std::uint64_t lobes = 0;     // kept, of the radiance
     std::uint64_t environmentLobes = 0;
-    std::uint64_t peakBytes = 0; // of device memory
-    double bakeSeconds = 0.0;       // least of `repeats`
-    double frameMilliseconds = 0.0; // least of as many, by the device's clock, after a warm-up
+    std::uint64_t peakBytes = 0;    // of device memory
+    double bakeSeconds = 0.0;       // least of `repeats`, after the checked one
+    double frameMilliseconds = 0.0; // the same, by the device's clock
 };
 
 struct SkipSettings

@@ -9,6 +9,8 @@
 #include "engine/base/flip.hpp"
 #include "engine/base/image_io.hpp"
 #include "engine/base/image_metrics.hpp"
+#include "passes/sg_textures.hpp"
+#include "samples/strandlight/savings_text.hpp"
 
 namespace strandlight::cli {
 
@@ -36,12 +38,28 @@ Json savePictures(const fs::path& folder, const std::string& scene, const GiStud
                             std::to_string(base.choice.atlas) + "; FLIP " + fixed(base.flip, 3)}};
 }
 
-Json passesOf(const std::string& scene, const FrameResult& frame)
+Json passesOf(const std::string& scene, const FrameResult& frame, const BakeSavings& savings)
 {
     Json rows = Json::array();
     for (const PassTiming& timing : frame.timings)
         rows.push_back({{"name", timing.pass}, {"milliseconds", timing.milliseconds}});
-    return {{"title", "Passes of a frame, " + scene}, {"rows", rows}, {"skipped", frame.skipped}};
+    return {{"title", "Passes of a frame, " + scene},
+            {"rows", rows},
+            {"skipped", frame.skipped},
+            {"savings", describeSavings(savings, kDeviceLobeBytes)},
+            {"target_bytes", frame.targetBytes},
+            {"arena_bytes", frame.arenaBytes}};
+}
+
+// What the scene did not need, as `render --stats` tells it.
+void printSkipped(const std::string& scene, const GiStudy& study)
+{
+    std::printf("a frame of %s, %zu passes\n", scene.c_str(), study.frame.passes.size());
+    for (const std::string& pass : study.frame.skipped)
+        std::printf("culled    %s\n", pass.c_str());
+    printSavings(study.savings, kDeviceLobeBytes);
+    printSharing(study.frame);
+    std::printf("\n");
 }
 
 void printStudy(const Json& rows, const char* study, std::initializer_list<const char*> columns)
@@ -114,7 +132,8 @@ void benchGi(const GiBenchOptions& options)
         const GiStudy study =
             studyGi(context, scene, options.common.quick ? smallGiSweep() : GiSweep{}, settings);
         addGiRows(rows, part.name, study);
-        passes.push_back(passesOf(part.name, study.frame));
+        passes.push_back(passesOf(part.name, study.frame, study.savings));
+        printSkipped(part.name, study);
         if (!options.folder.empty())
             pictures.push_back(savePictures(options.folder, part.name, study));
     }

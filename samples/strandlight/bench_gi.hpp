@@ -33,6 +33,7 @@ void addGiRows(Json& rows, const std::string& scene, const GiStudy& study);
 void addClosedFormRows(Json& rows); // studies "specular" and "diffuse"
 
 // What the rows say: headline numbers, and the plots and tables of the report.
+std::vector<std::string> giScenes(const Json& rows); // in their order
 Json giFacts(const Json& rows);
 Json giPlots(const Json& rows);
 Json giTables();

@@ -1,20 +1,11 @@
-// What the rows of `strandlight bench gi` say: headline numbers, and how the report draws them.
+// How the report draws the rows of `strandlight bench gi`.
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "samples/strandlight/bench_gi.hpp"
 
 namespace strandlight::cli {
 
-namespace {
-
-Json fact(const std::string& label, const std::string& value)
-{
-    return {{"label", label}, {"value", value}};
-}
-
-std::vector<std::string> scenesOf(const Json& rows)
+std::vector<std::string> giScenes(const Json& rows)
 {
     std::vector<std::string> scenes;
     for (const Json& row : rows)
@@ -24,78 +15,7 @@ std::vector<std::string> scenesOf(const Json& rows)
     return scenes;
 }
 
-// Seconds after which a fit's trace is first at or below `error`; NaN when it never is.
-double secondsTo(const Json& rows, const std::string& scene, const char* fit, double error)
-{
-    for (const Json& row : rows)
-        if (row["study"] == "fit over time" && row["scene"] == scene && row["series"] == fit &&
-            row["rmse_between"].is_number() && double(row["rmse_between"]) <= error)
-            return row["fit_s"];
-    return kNotMeasured;
-}
-
-// Who has the least error within each budget of bytes from 56 up, where that is not a free fit: ""
-// or "raw images at 1024 bytes".
-std::string budgetsWithoutFree(const Json& rows, const std::string& scene)
-{
-    std::map<double, const Json*> best; // of each size
-    for (const Json& row : rows)
-        if (row["study"] == "gi" && row["scene"] == scene && row.contains("on_bytes_front")) {
-            const Json*& slot = best[row["bytes_per_texel"]];
-            if (!slot || row["rmse_between"] < (*slot)["rmse_between"])
-                slot = &row;
-        }
-    std::string others;
-    const Json* least = nullptr;
-    for (const auto& [bytes, row] : best) {
-        if (!least || (*row)["rmse_between"] < (*least)["rmse_between"])
-            least = row;
-        const auto series = (*least)["series"].get<std::string>();
-        if (bytes >= 56.0 && !series.starts_with("free"))
-            others += (others.empty() ? "" : ", ") + series + " at " + fixed(bytes, 0) + " bytes";
-    }
-    return others;
-}
-
-void addSceneFacts(const Json& rows, const std::string& scene, Json& facts)
-{
-    const std::string others = budgetsWithoutFree(rows, scene);
-    facts.push_back(fact(scene + ": free SGs have the least error from 56 bytes a texel up",
-                         others.empty() ? "at every budget" : "but for " + others));
-    for (const Json& row : rows)
-        if (row["study"] == "gi" && row["scene"] == scene && row["knob"] == "representation" &&
-            row["representation"] == "cnn") {
-            const double target = row["rmse_between"];
-            const double cnn = row["fit_s"];
-            const double direct = secondsTo(rows, scene, "direct", target);
-            facts.push_back(fact(scene + ": cnn's final error between texels, " + fixed(target, 3),
-                                 "cnn " + fixed(cnn, 1) + " s, direct " +
-                                     (std::isfinite(direct) ? fixed(direct, 2) + " s (" +
-                                                                  fixed(direct / cnn, 3) + "x)"
-                                                            : std::string("never"))));
-        }
-}
-
-double meanError(const Json& rows, const char* study, const std::string& series)
-{
-    double sum = 0.0;
-    int count = 0;
-    for (const Json& row : rows)
-        if (row["study"] == study && row["series"] == series) {
-            sum += double(row["error"]);
-            ++count;
-        }
-    return sum / count;
-}
-
-double worstError(const Json& rows, const char* study, const std::string& series)
-{
-    double worst = 0.0;
-    for (const Json& row : rows)
-        if (row["study"] == study && row["series"] == series)
-            worst = std::max(worst, double(row["error"]));
-    return worst;
-}
+namespace {
 
 Json plot(const std::string& title, const std::string& note, const char* x, const char* y,
           const char* series, Json where)
@@ -106,22 +26,26 @@ Json plot(const std::string& title, const std::string& note, const char* x, cons
 
 void addScenePlots(const std::string& scene, Json& plots)
 {
-    Json bytes = plot(
-        scene + ": bytes against error",
-        "RMSE of the light field between texels, where no fit has looked, against what "
-        "is stored for a texel. One capture, every way to keep it. Raw images are what "
-        "was captured, blended: their error is parallax and noise.",
-        "bytes_per_texel", "rmse_between", "series",
-        {{"study", "gi"}, {"scene", scene}, {"knob", {"representation", "lobes and storage"}}});
+    Json bytes =
+        plot(scene + ": bytes against error",
+             "RMSE of the light field between texels, where no fit has looked, against what "
+             "is stored for a texel. One capture, every way to keep it. Raw images are what "
+             "was captured, blended: their error is parallax and noise.",
+             "bytes_per_texel", "rmse_between", "series",
+             {{"study", "gi"},
+              {"scene", scene},
+              {"knob", {"representation", "lobes and storage", "dropped lobes"}}});
     bytes["front"] = true;
-    Json bake = plot(
-        scene + ": bake time against error",
-        "FLIP of the rendered picture against a path-traced truth, whose noise counts as "
-        "error. Each knob is turned alone about the base.",
-        "bake_s", "flip", "knob",
-        {{"study", "gi"},
-         {"scene", scene},
-         {"knob", {"representation", "lobes and storage", "atlas", "light field", "samples"}}});
+    Json bake =
+        plot(scene + ": bake time against error",
+             "FLIP of the rendered picture against a path-traced truth, whose noise counts as "
+             "error. Each knob is turned alone about the base.",
+             "bake_s", "flip", "knob",
+             {{"study", "gi"},
+              {"scene", scene},
+              {"knob",
+               {"representation", "lobes and storage", "dropped lobes", "atlas", "light field",
+                "samples"}}});
     bake["front"] = true;
     Json fits = plot(scene + ": error while fits work",
                      "The same capture and lobes; where a line ends the fit is done.", "fit_s",
@@ -138,26 +62,10 @@ void addScenePlots(const std::string& scene, Json& plots)
 
 } // namespace
 
-Json giFacts(const Json& rows)
-{
-    Json facts = Json::array();
-    for (const std::string& scene : scenesOf(rows))
-        addSceneFacts(rows, scene, facts);
-    const double mixture = meanError(rows, "specular", "mixture (default)");
-    const double asg = meanError(rows, "specular", "asg (thesis)");
-    facts.push_back(
-        fact("glossy closed form, mean error: mixture over the thesis's ASG",
-             fixed(mixture, 3) + " / " + fixed(asg, 3) + " = " + fixed(mixture / asg, 3)));
-    const double diffuse = worstError(rows, "diffuse", "Tokuyoshi 2024 (default)");
-    facts.push_back(fact("diffuse closed form, largest error for sharpness 1e-3 to 1e5",
-                         fixed(1e3 * diffuse, 2) + "e-3 of the lobe's energy"));
-    return facts;
-}
-
 Json giPlots(const Json& rows)
 {
     Json plots = Json::array();
-    for (const std::string& scene : scenesOf(rows))
+    for (const std::string& scene : giScenes(rows))
         addScenePlots(scene, plots);
     Json specular =
         plot("Glossy closed forms",
@@ -189,8 +97,10 @@ Json giTables()
               {"name", "bytes_per_texel", "fit_s", "rmse_texel", "rmse_between", "flip", "ssim"}),
         table("Sizes", "One knob at a time.", {"atlas", "light field", "samples"},
               {"name", "texels", "bake_s", "rmse_between", "flip", "relmse"}),
-        table("Lobes and storage", "The direct fit.", "lobes and storage",
-              {"name", "bytes_per_texel", "rmse_between", "flip", "shading_ms"}),
+        table("Lobes and storage", "The direct fit.",
+              {"base", "lobes and storage", "dropped lobes"},
+              {"name", "bytes_per_texel", "rmse_texel", "rmse_between", "flip", "relmse",
+               "shading_ms"}),
         table("Shading tiers", "Specular + diffuse model.", "shading",
               {"name", "shading_ms", "flip", "relmse", "ssim"})};
 }

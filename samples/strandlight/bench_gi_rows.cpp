@@ -20,7 +20,8 @@ Json number(double value)
 std::string seriesOf(const GiChoice& choice)
 {
     if (isFree(choice))
-        return "free SGs, " + choice.representation + ", " + toString(choice.storage);
+        return "free SGs, " + choice.representation + ", " + toString(choice.storage) +
+               (choice.lobeError > 0.0f ? ", dropped" : "");
     return choice.representation.starts_with("SH") ? "spherical harmonics" : choice.representation;
 }
 
@@ -32,6 +33,8 @@ std::string nameOf(const GiRow& row)
                (c.representation == "fixed SGs" ? " x " + std::to_string(c.lobes) : "");
     if (row.knob == "lobes and storage")
         return std::to_string(c.lobes) + " lobes, " + toString(c.storage);
+    if (row.knob == "dropped lobes")
+        return "lobe error " + fixed(c.lobeError, 2);
     if (row.knob == "atlas")
         return "atlas " + std::to_string(c.atlas);
     if (row.knob == "light field")
@@ -53,6 +56,8 @@ Json rowJson(const std::string& scene, const GiRow& row)
             {"series", seriesOf(c)},
             {"representation", c.representation},
             {"lobes", c.lobes},
+            {"lobe_error", c.lobeError},
+            {"lobe_tile", c.lobeTile},
             {"atlas", c.atlas},
             {"light_field", c.lightfield},
             {"samples", c.samples},
@@ -97,7 +102,8 @@ void addGiRows(Json& rows, const std::string& scene, const GiStudy& study)
         rows.push_back(rowJson(scene, row));
     // Rows of one capture compete for bytes; for time all that is drawn with the default shading.
     markFront(rows, first, "on_bytes_front", "bytes_per_texel", "rmse_between", [](const Json& r) {
-        return r["knob"] == "representation" || r["knob"] == "lobes and storage";
+        return r["knob"] == "representation" || r["knob"] == "lobes and storage" ||
+               r["knob"] == "dropped lobes";
     });
     markFront(rows, first, "on_bake_front", "bake_s", "flip",
               [](const Json& r) { return r["knob"] != "shading" && r["knob"] != "base"; });

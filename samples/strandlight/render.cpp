@@ -1,5 +1,7 @@
 // strandlight render: a picture from a bake.
 #include <chrono>
+#include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -17,11 +19,10 @@ namespace strandlight::cli {
 
 namespace {
 
-const std::map<std::string, RenderView> kViews{{"final", RenderView::Final},
-                                               {"diffuse", RenderView::Diffuse},
-                                               {"specular", RenderView::Specular},
-                                               {"lobes", RenderView::Lobes},
-                                               {"atlas", RenderView::Atlas}};
+const std::map<std::string, RenderView> kViews{
+    {"final", RenderView::Final},       {"diffuse", RenderView::Diffuse},
+    {"specular", RenderView::Specular}, {"lobes", RenderView::Lobes},
+    {"atlas", RenderView::Atlas},       {"count", RenderView::Count}};
 const std::map<std::string, SpecularModel> kSpecularModels{{"mixture", SpecularModel::Mixture},
                                                            {"asg", SpecularModel::Asg},
                                                            {"ndf", SpecularModel::NdfFilter}};
@@ -43,6 +44,14 @@ struct Options
     std::string json;
 };
 
+// What --stats draws beside the picture.
+struct FrameStats
+{
+    double allLobesMilliseconds = 0.0; // of the same frame with nothing dropped
+    std::uint64_t trips = 0;           // turns of a shading pass's loop over lobes, all pixels
+    std::uint64_t allTrips = 0;        // with nothing dropped
+};
+
 double totalMilliseconds(const FrameResult& frame)
 {
     double total = 0.0;
@@ -51,8 +60,16 @@ double totalMilliseconds(const FrameResult& frame)
     return total;
 }
 
+std::uint64_t tripsOf(const FrameResult& counts, std::uint32_t supersample)
+{
+    double sum = 0.0;
+    for (const glm::vec4& pixel : counts.radiance.pixels)
+        sum += double(pixel.x) * supersample * supersample;
+    return std::uint64_t(std::llround(sum));
+}
+
 Json describe(const Options& o, const Context& context, const Camera& camera, const SgBake& bake,
-              const FrameResult& frame, double allLobesMilliseconds, double seconds)
+              const FrameResult& frame, const FrameStats& stats, double seconds)
 {
     Json json = describeRun("render", &context);
     json["settings"] = {{"scene", o.scene.scene},
@@ -78,14 +95,16 @@ Json describe(const Options& o, const Context& context, const Camera& camera, co
                       {"target_bytes", frame.targetBytes},
                       {"arena_bytes", frame.arenaBytes},
                       {"savings", describeSavings(bakeSavings(bake), kDeviceLobeBytes)},
-                      {"milliseconds_with_all_lobes", allLobesMilliseconds},
+                      {"milliseconds_with_all_lobes", stats.allLobesMilliseconds},
+                      {"lobe_trips", stats.trips},
+                      {"lobe_trips_with_all_lobes", stats.allTrips},
                       {"peak_device_bytes", context.peakBytesAllocated()},
                       {"seconds", seconds}};
     return json;
 }
 
 void printStats(const Context& context, const SgBake& bake, const FrameResult& frame,
-                double allLobesMilliseconds)
+                const FrameStats& stats)
 {
     std::printf("device    %s\n", context.device().name.c_str());
     for (const PassTiming& timing : frame.timings)
@@ -97,10 +116,12 @@ void printStats(const Context& context, const SgBake& bake, const FrameResult& f
                 bytesText(context.peakBytesAllocated()).c_str());
     std::printf("skipped   %zu kinds of light or of passes\n", frame.skipped.size());
     printSavings(bakeSavings(bake), kDeviceLobeBytes);
-    std::printf("saved     %s of %s between passes by sharing memory, %.3f ms of lobes\n",
-                bytesText(frame.targetBytes - frame.arenaBytes).c_str(),
-                bytesText(frame.targetBytes).c_str(),
-                allLobesMilliseconds - totalMilliseconds(frame));
+    printSharing(frame);
+    if (stats.allTrips > 0)
+        std::printf("saved     %" PRIu64 " of %" PRIu64
+                    " turns of a pass's loop over lobes, %.3f ms\n",
+                    stats.allTrips - stats.trips, stats.allTrips,
+                    stats.allLobesMilliseconds - totalMilliseconds(frame));
 }
 
 int run(Options& o)
@@ -121,15 +142,22 @@ int run(Options& o)
     Context context = openDevice(o.device);
 
     GpuScene gpuScene = scene.triangles.empty() ? GpuScene() : uploadScene(context, scene);
-    const auto draw = [&](const SgBake& lit) {
-        return renderFrame(context, scene, gpuScene, lit, camera, o.settings);
+    const auto draw = [&](const SgBake& lit, RenderView view) {
+        RenderSettings wanted = o.settings;
+        wanted.view = view;
+        return renderFrame(context, scene, gpuScene, lit, camera, wanted);
     };
-    FrameResult frame = draw(bake);
-    double allLobesMilliseconds = 0.0;
-    if (o.stats) {
-        frame = draw(bake); // drivers compile at first use: the second frame's times are a frame's
-        allLobesMilliseconds =
-            totalMilliseconds(bakeSavings(bake).tiles > 0 ? draw(withAllLobes(bake)) : frame);
+    FrameResult frame = draw(bake, o.settings.view);
+    FrameStats stats;
+    if (o.stats) { // drivers compile at first use: the second frame's times are a frame's
+        frame = draw(bake, o.settings.view);
+        stats.allLobesMilliseconds = totalMilliseconds(frame);
+    }
+    if (o.stats && bakeSavings(bake).tiles > 0) {
+        const SgBake whole = withAllLobes(bake);
+        stats.allLobesMilliseconds = totalMilliseconds(draw(whole, o.settings.view));
+        stats.trips = tripsOf(draw(bake, RenderView::Count), o.settings.supersample);
+        stats.allTrips = tripsOf(draw(whole, RenderView::Count), o.settings.supersample);
     }
     throwIfInterrupted();
     for (const std::string& output : o.view.outputs)
@@ -137,11 +165,10 @@ int run(Options& o)
 
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     if (o.stats)
-        printStats(context, bake, frame, allLobesMilliseconds);
+        printStats(context, bake, frame, stats);
     for (const std::string& output : o.view.outputs)
         std::printf("wrote     %s, %.1f s\n", output.c_str(), elapsed.count());
-    writeJson(o.json,
-              describe(o, context, camera, bake, frame, allLobesMilliseconds, elapsed.count()));
+    writeJson(o.json, describe(o, context, camera, bake, frame, stats, elapsed.count()));
     return 0;
 }
 
@@ -154,7 +181,8 @@ Command addRender(CLI::App& parent)
     addSceneOptions(*app, o->scene);
     app->add_option("--bake", o->bake, "The bake, .sgl")->required()->type_name("FILE");
     addViewOptions(*app, o->view);
-    app->add_option("--view", o->viewName, "final, diffuse, specular, lobes or atlas")
+    app->add_option("--view", o->viewName,
+                    "final, diffuse, specular, lobes, atlas, or the count of lobes that shade")
         ->type_name("VIEW")
         ->capture_default_str()
         ->check(CLI::IsMember(kViews));

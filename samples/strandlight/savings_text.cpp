@@ -19,12 +19,22 @@ std::uint64_t savedBytes(const BakeSavings& s, std::uint64_t lobeBytes)
 
 void printSavings(const BakeSavings& s, std::uint64_t lobeBytes)
 {
-    std::printf("skipped   %" PRIu64 " of %" PRIu64 " texels (no surface), %" PRIu64 " of %" PRIu64
-                " lobes (dropped), %" PRIu64 " of %" PRIu64 " tiles (dark)\n",
-                s.places - s.texels, s.places, s.lobes - s.keptLobes, s.lobes, s.darkTiles,
-                s.tiles);
+    std::printf("skipped   %" PRIu64 " of %" PRIu64 " texels (no surface)", s.places - s.texels,
+                s.places);
+    if (s.tiles > 0)
+        std::printf(", %" PRIu64 " of %" PRIu64 " lobes (dropped), %" PRIu64 " of %" PRIu64
+                    " tiles (dark)",
+                    s.lobes - s.keptLobes, s.lobes, s.darkTiles, s.tiles);
+    std::printf("\n");
     std::printf("saved     %s of lobes, %s are kept\n", bytesText(savedBytes(s, lobeBytes)).c_str(),
                 bytesText(s.keptLobes * lobeBytes).c_str());
+}
+
+void printSharing(const FrameResult& frame)
+{
+    std::printf("saved     %s of %s between passes by sharing memory\n",
+                bytesText(frame.targetBytes - frame.arenaBytes).c_str(),
+                bytesText(frame.targetBytes).c_str());
 }
 
 Json describeSavings(const BakeSavings& s, std::uint64_t lobeBytes)

@@ -1,4 +1,4 @@
-// Two looks at the bake itself. Specialisation constant 0: kViewLobes or kViewAtlas (shared/shade_types.h).
+// Looks at the bake itself. Specialisation constant 0: kViewLobes, kViewAtlas or kViewCount (shared/shade_types.h).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -61,6 +61,11 @@ void main()
     vec3 before = imageLoad(lit, pixel).rgb;
     if (kView == kViewAtlas) {
         imageStore(lit, pixel, vec4(texelColor(place), 1.0));
+        return;
+    }
+    if (kView == kViewCount) {
+        uint count = bitCount(sgFootprint(place, push.atlasResolution).lobes);
+        imageStore(lit, pixel, vec4(vec3(float(count)), 1.0));
         return;
     }
     AtlasFrame frame = atlasFrame(frameN.xyz, frameT.xyz, imageLoad(specularImage, pixel).w > 0.0);

@@ -36,6 +36,7 @@ STRANDLIGHT_CONST(uint) kViewDiffuse = 1u;
 STRANDLIGHT_CONST(uint) kViewSpecular = 2u;
 STRANDLIGHT_CONST(uint) kViewLobes = 3u; // the light field itself, seen in a perfect mirror
 STRANDLIGHT_CONST(uint) kViewAtlas = 4u; // atlas texels as a coloured checkerboard
+STRANDLIGHT_CONST(uint) kViewCount = 5u; // how many lobes shading loops over
 
 STRANDLIGHT_CONST(uint) kNoTexel = 0xffffffffu;
 

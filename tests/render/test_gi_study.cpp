@@ -23,6 +23,7 @@ GiSweep tinySweep()
     sweep.fits = {"direct"};
     sweep.fixedLobes = {4};
     sweep.lobes = {4};
+    sweep.lobeErrors = {0.2f};
     sweep.atlases = {};
     sweep.lightfields = {4};
     sweep.samples = {};
@@ -66,6 +67,11 @@ TEST_CASE("gi study: rows are consistent, and the truth is kept")
             ways[row.choice.representation] = row;
         if (row.knob == "lobes and storage")
             stored[toString(row.choice.storage)] = row;
+        if (row.knob == "dropped lobes") { // a byte a tile says which
+            CHECK(row.bytesPerTexel < 0.8 * study.rows.front().bytesPerTexel);
+            CHECK(row.texelRmse < 1.6 * study.rows.front().texelRmse); // 1.2 of the relative error
+            CHECK(row.texelRmse != study.rows.front().texelRmse);
+        }
         if (row.knob == "shading")
             shading[std::string(toString(row.choice.specular)) + toString(row.choice.diffuse)] =
                 row;

@@ -3,7 +3,10 @@
 
 #include <doctest/doctest.h>
 
+#include "passes/sg_fit_irradiance.hpp"
 #include "passes/sg_prune.hpp"
+#include "passes/texel_gloss.hpp"
+#include "shaders/shared/sg_diffuse.h"
 #include "tests/support/synthetic_lightfield.hpp"
 
 using namespace strandlight;
@@ -79,6 +82,70 @@ TEST_CASE("prune: a lobe that the error cannot do without stays")
     pruneLobes(problem, settings, field);
     for (const std::uint32_t mask : field.kept)
         CHECK(mask == 1u);
+}
+
+TEST_CASE("prune: a surface that reflects sharply keeps what a rough one gives up")
+{
+    const FitSettings settings = twoLobes(0.006f); // enough for some, not for all
+    FitProblem problem = problemOf(1.0f, settings);
+    SgField field = sameEverywhere(
+        {SgLobe{.logSharpness = -4.0f, .amplitude = glm::vec3(0.95f)},
+         SgLobe{.axis = {1.0f, 0.0f, 0.0f}, .logSharpness = 3.0f, .amplitude = glm::vec3(0.1f)}});
+    problem.gloss.assign(kGrid * kGrid, 0.0f);
+    for (std::size_t t = 0; t < kGrid * kGrid / 2; ++t) // whole tiles
+        problem.gloss[t] = 1.0f;
+    pruneLobes(problem, settings, field);
+    std::size_t glossy = 0, rough = 0;
+    for (std::size_t t = 0; t < field.kept.size(); ++t)
+        (problem.gloss[t] > 0.0f ? glossy : rough) += field.kept[t] == 3u ? 1 : 0;
+    CHECK(glossy == kGrid * kGrid / 2);
+    CHECK(rough < kGrid * kGrid / 2);
+}
+
+TEST_CASE("prune: what is left sends the light of all")
+{
+    const FitSettings settings = twoLobes(0.5f);
+    const FitProblem problem = problemOf(1.0f, settings);
+    const SgLobe wide{.logSharpness = -4.0f, .amplitude = glm::vec3(0.7f, 0.5f, 0.3f)};
+    const SgLobe narrow{
+        .axis = {0.6f, 0.0f, 0.8f}, .logSharpness = 2.0f, .amplitude = glm::vec3(0.2f, 0.4f, 0.6f)};
+    const SgField whole = sameEverywhere({wide, narrow});
+    SgField field = whole;
+    field.tileSize = 1;
+    field.kept.assign(kGrid * kGrid, 1u);
+    for (std::size_t t = 0; t < field.kept.size(); ++t)
+        field.lobes[2 * t + 1].amplitude = glm::vec3(0.0f);
+    matchIrradianceOf(problem, whole, field);
+    const auto irradiance = [](const SgField& f, std::size_t t) {
+        glm::vec3 sum(0.0f);
+        for (std::size_t k = 2 * t; k < 2 * t + 2; ++k)
+            sum += f.lobes[k].amplitude *
+                   gpu::sgIrradiance(std::exp(f.lobes[k].logSharpness), f.lobes[k].axis.z);
+        return sum;
+    };
+    for (std::size_t t = 0; t < field.kept.size(); ++t)
+        CHECK(glm::distance(irradiance(field, t), irradiance(whole, t)) < 1e-5f);
+}
+
+TEST_CASE("gloss: F0 of what reflects sharply, nothing of rough or matte surfaces")
+{
+    Scene scene;
+    scene.vertices.resize(3);
+    scene.triangles = {{0, 1, 2}, {0, 1, 2}, {0, 1, 2}, {0, 1, 2}};
+    scene.triangleMaterials = {0, 1, 2, 3};
+    scene.materials.resize(4);
+    scene.materials[0] = {.baseColor = {0.2f, 0.9f, 0.5f, 1.0f}, .metallic = 1, .roughness = 0.25f};
+    scene.materials[1] = {.metallic = 0.0f, .roughness = 0.5f};
+    scene.materials[2] = {.metallic = 1.0f, .roughness = 1.0f};
+    scene.materials[3] = {.metallic = 0.0f, .roughness = 0.0f, .specular = 0.0f};
+    Atlas atlas;
+    for (std::uint32_t t = 0; t < 4; ++t)
+        atlas.texels.push_back({.triangle = t});
+    const std::vector<float> gloss = texelGloss(scene, atlas);
+    CHECK(gloss[0] == doctest::Approx(0.9 * 0.75));
+    CHECK(gloss[1] == doctest::Approx(0.04 * 0.5));
+    CHECK(gloss[2] == 0.0f);
+    CHECK(gloss[3] == 0.0f);
 }
 
 TEST_CASE("prune: a lobe missing at a corner fades without turning")
