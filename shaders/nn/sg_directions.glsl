@@ -8,14 +8,15 @@ vec3 direction[TILE];
 void loadDirections(uint n, uint first)
 {
     int at = int(n * push.directionImageStride + first * 3);
-    if (TILE == 4) {
-        vec4 a = imageLoad(directionQuads, at / 4);
-        vec4 b = imageLoad(directionQuads, at / 4 + 1);
-        vec4 c = imageLoad(directionQuads, at / 4 + 2);
-        direction[0] = a.xyz;
-        direction[1 % TILE] = vec3(a.w, b.xy);
-        direction[2 % TILE] = vec3(b.zw, c.x);
-        direction[3 % TILE] = c.yzw;
+    if (TILE % 4 == 0) {
+        float values[3 * TILE + 3];
+        [[unroll]] for (uint j = 0; j < 3 * TILE; j += 4) {
+            vec4 quad = imageLoad(directionQuads, at / 4 + int(j / 4));
+            [[unroll]] for (uint i = 0; i < 4; ++i)
+                values[j + i] = quad[i];
+        }
+        [[unroll]] for (uint j = 0; j < TILE; ++j)
+            direction[j] = vec3(values[3 * j], values[3 * j + 1], values[3 * j + 2]);
     } else {
         direction[0] = vec3(imageLoad(directions, at).x, imageLoad(directions, at + 1).x, imageLoad(directions, at + 2).x);
     }

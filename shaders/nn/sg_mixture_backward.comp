@@ -9,7 +9,7 @@
 
 layout(local_size_x = 8) in;
 layout(constant_id = 0) const uint LOBES = 1; // of one invocation
-layout(constant_id = 1) const uint TILE = 1;  // directions at once, as in the forward pass
+layout(constant_id = 1) const uint TILE = 1;  // directions at once, a multiple of four as in the forward pass, or 1
 layout(binding = 0, r32f) uniform readonly imageBuffer raw;        // [N,L,7]
 layout(binding = 1, r32f) uniform readonly imageBuffer directions; // [N,D,3] or [D,3], unit
 layout(binding = 2, rgba32f) uniform readonly imageBuffer directionQuads;
@@ -27,9 +27,15 @@ void loadOut(uint n, uint first)
     int at = int(n * 3 * push.directions + first * push.directionStride);
     [[unroll]] for (int c = 0; c < 3; ++c) {
         int from = at + c * int(push.channelStride);
-        vec4 value = TILE == 4 ? imageLoad(dRadianceQuads, from / 4) : vec4(imageLoad(dRadiance, from).x);
-        [[unroll]] for (uint j = 0; j < TILE; ++j)
-            dOut[j][c] = value[j];
+        if (TILE % 4 == 0) {
+            [[unroll]] for (uint j = 0; j < TILE; j += 4) {
+                vec4 quad = imageLoad(dRadianceQuads, (from + int(j)) / 4);
+                [[unroll]] for (uint i = 0; i < 4; ++i)
+                    dOut[(j + i) % TILE][c] = quad[i];
+            }
+        } else {
+            dOut[0][c] = imageLoad(dRadiance, from).x;
+        }
     }
 }
 
