@@ -72,17 +72,19 @@ void GiMeasure::State::draw(const GiChoice& choice, const SgField& lobes, GiRow&
     wanted.height = settings.height;
     wanted.specular = choice.specular;
     wanted.diffuse = choice.diffuse;
+    frame = renderFrame(context, scene, device, bake, camera, wanted);
+    const ImageComparison error = compareImages(frame.radiance, truth);
+    if (error.nonFinite > 0) // no time of a wrong picture
+        throw Error(std::to_string(error.nonFinite) + " pixels of a frame are not finite");
     std::vector<double> milliseconds;
-    for (std::uint32_t i = 0; i <= settings.frames; ++i) {
+    for (std::uint32_t i = 0; i < settings.frames; ++i) {
         throwIfInterrupted();
         frame = renderFrame(context, scene, device, bake, camera, wanted);
-        if (i > 0) // drivers compile at first use
-            milliseconds.push_back(shadingMilliseconds(frame));
+        milliseconds.push_back(shadingMilliseconds(frame));
     }
     const auto middle = milliseconds.begin() + std::ptrdiff_t(milliseconds.size() / 2);
     std::nth_element(milliseconds.begin(), middle, milliseconds.end());
     row.shadingMilliseconds = *middle;
-    const ImageComparison error = compareImages(frame.radiance, truth);
     row.relMse = error.relMse;
     row.flip = error.flip;
     row.ssim = error.ssim;

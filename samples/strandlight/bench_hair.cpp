@@ -133,6 +133,14 @@ std::uint32_t truthSamples(const HairBench& o)
     return o.samples > 0 ? o.samples : o.common.quick ? 256 : 1024;
 }
 
+// Nothing is timed that is not a picture of the truth, however noisy.
+void check(const std::string& name, const HairError& error)
+{
+    if (error.picture.nonFinite > 0 || !(error.picture.ssim > 0.5))
+        throw Error(name + ": " + std::to_string(error.picture.nonFinite) +
+                    " pixels are not finite, SSIM is " + fixed(error.picture.ssim, 3));
+}
+
 class CaseBench
 {
 public:
@@ -160,8 +168,9 @@ public:
         for (const Method& method : methodsOf(options_.common.quick, networks_)) {
             throwIfInterrupted();
             const HairFrame frame = render(settingsOf(method));
-            const HairFrame moved = nextFrame(method); // timed: the first one builds pipelines
             const HairError error = compareHair(frame, truth);
+            check(subject_.name + " " + method.name, error);
+            const HairFrame moved = nextFrame(method); // timed: the first one builds pipelines
             base = pictures.empty() ? error.picture.rmse : base;
             if (pictures.empty() || (method.filter == HairFilter::UNet && pictures.size() == 1))
                 pictures.push_back(frame.radiance);

@@ -163,6 +163,28 @@ TEST_CASE("an empty scene bakes to a valid file and renders, without touching th
                "other geometry");
 }
 
+TEST_CASE("render --stats tells what dropped lobes save, and nothing of them where none were")
+{
+    const TemporaryFolder folder;
+    const auto in = [&](const char* name) { return (folder.path() / name).string(); };
+    const auto stats = [&](const Words& options) {
+        REQUIRE(runCommand(bakeRoom(in("room.sgl"), kTiny + options)).exitCode == 0);
+        const CommandResult result =
+            runCommand({"render", "builtin:room", "--bake", in("room.sgl"), "-o", in("a.png"),
+                        "--size", "32x24", "--stats", "--json", in("r.json")});
+        REQUIRE(result.exitCode == 0);
+        return result.output;
+    };
+    CHECK(stats({}).find("dropped") == std::string::npos);
+    CHECK(stats({"--lobe-error", "0.05"}).find("turns of a pass's loop") != std::string::npos);
+    const nlohmann::json result = readJson(in("r.json"))["result"];
+    // All eight of every pixel that is seen, four to a pixel of the picture.
+    CHECK(result["lobe_trips_with_all_lobes"] == 8 * 4 * 32 * 24);
+    CHECK(result["lobe_trips"] < result["lobe_trips_with_all_lobes"]);
+    CHECK(result["lobe_trips"] > 0);
+    CHECK(result["savings"]["kept_lobes"] < result["savings"]["lobes"]);
+}
+
 TEST_CASE("bake, info, render and reference, each with JSON")
 {
     const TemporaryFolder folder;

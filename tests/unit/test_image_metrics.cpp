@@ -43,6 +43,14 @@ TEST_CASE("metrics: closed forms for solid pictures")
     CHECK(c.psnr == doctest::Approx(-10.0 * std::log10(d * d / 3.0)));
 }
 
+TEST_CASE("metrics: relMSE divides by the reference, so it has a direction")
+{
+    const CpuImage dark = makeSolid(glm::vec3(0.1f)), bright = makeSolid(glm::vec3(1.0f));
+    CHECK(compareImages(bright, dark).relMse == doctest::Approx(0.81 / 0.02));
+    CHECK(compareImages(dark, bright).relMse == doctest::Approx(0.81 / 1.01));
+    CHECK(compareImages(dark, bright).rmse == compareImages(bright, dark).rmse);
+}
+
 TEST_CASE("metrics: a difference of one tenth of the coded range is 20 dB, of all of it 0 dB")
 {
     // IEC 61966-2-1, the linear value of a coded one.
