@@ -20,10 +20,14 @@ TexelFormat texelFormat(std::uint32_t spirvFormat, const std::string& where)
     switch (spirvFormat) { // SPIR-V 1.6, 3.11 Image Format
     case 1:
         return {VK_FORMAT_R32G32B32A32_SFLOAT, 16};
+    case 2:
+        return {VK_FORMAT_R16G16B16A16_SFLOAT, 8};
     case 3:
         return {VK_FORMAT_R32_SFLOAT, 4};
     case 6:
         return {VK_FORMAT_R32G32_SFLOAT, 8};
+    case 9:
+        return {VK_FORMAT_R16_SFLOAT, 2};
     case 30:
         return {VK_FORMAT_R32G32B32A32_UINT, 16};
     case 33:
@@ -31,8 +35,8 @@ TexelFormat texelFormat(std::uint32_t spirvFormat, const std::string& where)
     case 35:
         return {VK_FORMAT_R32G32_UINT, 8};
     default:
-        throw GraphError(where + ": a texel buffer needs the format r32f, rg32f, rgba32f, r32ui, "
-                                 "rg32ui or rgba32ui");
+        throw GraphError(where + ": a texel buffer needs the format r16f, rgba16f, r32f, rg32f, "
+                                 "rgba32f, r32ui, rg32ui or rgba32ui");
     }
 }
 

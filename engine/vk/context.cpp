@@ -131,7 +131,7 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
     queue.queueFamilyIndex = state.queueFamily;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
-    const DeviceFeatures features;
+    const DeviceFeatures features(state.deviceInfo.missingForHalves.empty());
     const char* const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.core};
     info.queueCreateInfoCount = 1;

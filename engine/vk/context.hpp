@@ -15,6 +15,7 @@ struct DeviceInfo
     std::string type;                  // "discrete", "integrated", "cpu", ...
     std::vector<std::string> refusals; // why this device cannot be used; empty: it can
     std::string matrixUnits;           // whether kernels use them, or what is missing
+    std::string missingForHalves;      // why no tensor can be stored as halves; empty: it can
 };
 
 struct ContextSettings

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.hpp"
 #include "engine/vk/check.hpp"
+#include "engine/vk/optional_features.hpp"
 
 namespace strandlight {
 
@@ -54,26 +55,6 @@ int rank(const DeviceInfo& info)
     return int(found - std::begin(kOrder));
 }
 
-bool hasExtension(VkPhysicalDevice device, const char* name)
-{
-    std::uint32_t count = 0;
-    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-    std::vector<VkExtensionProperties> list(count);
-    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, list.data());
-    return std::any_of(list.begin(), list.end(),
-                       [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
-}
-
-// The headers that the engine is built with may be older than the extension: asked for by name.
-// Kernels for it need GL_KHR_cooperative_matrix in the shader compiler as well (glslang 13; Debian
-// 12 has 12).
-std::string matrixUnits(VkPhysicalDevice device)
-{
-    return hasExtension(device, "VK_KHR_cooperative_matrix")
-               ? "not used: built without GL_KHR_cooperative_matrix (glslang 13)"
-               : "not used: the device lacks VK_KHR_cooperative_matrix";
-}
-
 // A number is an index and nothing else: "1" must not match a name with a 1 in it.
 bool isIndex(const std::string& text)
 {
@@ -90,13 +71,25 @@ std::string lower(std::string text)
 
 } // namespace
 
-DeviceFeatures::DeviceFeatures()
+bool hasExtension(VkPhysicalDevice device, const char* name)
+{
+    std::uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> list(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, list.data());
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+DeviceFeatures::DeviceFeatures(bool halfTensors)
 {
     core.pNext = &v11;
     v11.pNext = &v12;
     v12.pNext = &v13;
     for (const FeatureRow& row : kRequired)
         *row.get(*this) = VK_TRUE;
+    v11.storageBuffer16BitAccess = halfTensors;
+    core.features.shaderStorageImageExtendedFormats = halfTensors;
 }
 
 DeviceInfo describeDevice(VkPhysicalDevice device)
@@ -116,9 +109,10 @@ DeviceInfo describeDevice(VkPhysicalDevice device)
             ", 1.3 is needed");
         return info;
     }
-    info.matrixUnits = matrixUnits(device);
-    DeviceFeatures has;
+    DeviceFeatures has(false);
     vkGetPhysicalDeviceFeatures2(device, &has.core);
+    info.matrixUnits = matrixUnitsText(matrixSupport(device, has));
+    info.missingForHalves = missingForHalves(device, has);
     for (const FeatureRow& row : kRequired)
         if (!*row.get(has))
             info.refusals.push_back(std::string("lacks ") + row.name);

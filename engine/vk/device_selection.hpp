@@ -10,6 +10,8 @@
 
 namespace strandlight {
 
+bool hasExtension(VkPhysicalDevice device, const char* name);
+
 DeviceInfo describeDevice(VkPhysicalDevice device);
 
 // `wanted`: "", an index in the loader's order, or part of a name. Discrete before integrated
@@ -17,10 +19,11 @@ DeviceInfo describeDevice(VkPhysicalDevice device);
 // refused.
 VkPhysicalDevice selectDevice(VkInstance instance, const std::string& wanted);
 
-// The features that every kernel may rely on, for vkCreateDevice; the chain lives in the struct.
+// The features that every kernel may rely on, and those of tensors stored as halves where asked
+// for, for vkCreateDevice; the chain lives in the struct.
 struct DeviceFeatures
 {
-    DeviceFeatures();
+    explicit DeviceFeatures(bool halfTensors);
     DeviceFeatures(const DeviceFeatures&) = delete; // the chain points into the struct
     DeviceFeatures& operator=(const DeviceFeatures&) = delete;
     VkPhysicalDeviceFeatures2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};

@@ -34,12 +34,16 @@ Json showDevices()
         for (const std::string& reason : device.refusals)
             std::printf("     lacks %s\n", reason.c_str());
         if (device.refusals.empty())
-            std::printf("     matrix units %s\n", device.matrixUnits.c_str());
+            std::printf(
+                "     matrix units %s\n     half tensors %s%s\n", device.matrixUnits.c_str(),
+                device.missingForHalves.empty() ? "usable" : "not usable: the device lacks ",
+                device.missingForHalves.c_str());
         json.push_back({{"name", device.name},
                         {"driver", device.driver},
                         {"type", device.type},
                         {"usable", device.refusals.empty()},
                         {"matrix_units", device.matrixUnits},
+                        {"missing_for_halves", device.missingForHalves},
                         {"refusals", device.refusals}});
     }
     if (json.empty())
