@@ -52,13 +52,16 @@ TensorId addByParts(RenderGraph& graph, std::string_view name, const TensorId& i
 TensorId addForwardPass(RenderGraph& graph, std::string_view name, std::uint32_t kind, float slope,
                         const TensorId& x, const TensorId& y)
 {
+    STRANDLIGHT_ASSERT(x.element == Element::Float);
+    const KernelBlob& kernel =
+        y.element == Element::Float ? kernels::activation : kernels::activation_to_half;
     return addByParts(graph, name, x, x, y,
                       [&](const TensorId& in, const TensorId&, const TensorId& out) {
                           PassBuilder pass = graph.addComputePass(name);
                           const Binding from = in.binding(pass.read(in.buffer));
                           const BufferId to = pass.write(out.buffer);
                           const gpu::ElementPush push = elementPush(in, out, in, slope);
-                          pass.dispatch(kernels::activation, elementThreads(push, out.desc.n), push,
+                          pass.dispatch(kernel, elementThreads(push, out.desc.n), push,
                                         {from, from, out.binding(to)}, {kind, 0});
                           return to;
                       });
@@ -103,6 +106,13 @@ TensorId activationBackward(RenderGraph& graph, std::string_view name, const Act
                           {from, value, out.binding(to)}, {std::uint32_t(activation.kind), 1});
             return to;
         });
+}
+
+TensorId storeAsHalves(RenderGraph& graph, std::string_view name, const TensorId& x,
+                       const TensorId& y)
+{
+    STRANDLIGHT_ASSERT(y.element == Element::Half);
+    return activationForward(graph, name, Activation::none(), x, y);
 }
 
 TensorId log1pForward(RenderGraph& graph, std::string_view name, const TensorId& x,

@@ -20,6 +20,10 @@ TensorId activationForward(RenderGraph& graph, std::string_view name, const Acti
 TensorId activationBackward(RenderGraph& graph, std::string_view name, const Activation& activation,
                             const TensorId& y, const TensorId& dY, const TensorId& dX);
 
+// y = x in halves; beyond 65504 it is an infinity or 65504, as the device rounds.
+TensorId storeAsHalves(RenderGraph& graph, std::string_view name, const TensorId& x,
+                       const TensorId& y);
+
 // y = ln(1 + max(x, 0)): how networks see radiance.
 TensorId log1pForward(RenderGraph& graph, std::string_view name, const TensorId& x,
                       const TensorId& y);

@@ -24,7 +24,7 @@ void checkShapes(std::string_view name, const Conv2dDesc& desc, const TensorDesc
 
 TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
                        const TensorId& x, const LayerWeights& weights, const TensorId& y,
-                       const Activation& activation, const TileList* tiles)
+                       const Activation& activation, const TileList* tiles, HalfGuard* guard)
 {
     checkShapes(name, desc, x.desc, y.desc);
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
@@ -37,7 +37,8 @@ TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDe
                         .slope = fusedSlope(activation),
                         .bias = weights.hasBias,
                         .backward = {},
-                        .tiles = tiles},
+                        .tiles = tiles,
+                        .guard = guard},
                        x, weights, y);
 }
 

@@ -13,7 +13,8 @@ namespace strandlight {
 // be fused. Throws Error when shapes do not fit.
 TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
                        const TensorId& x, const LayerWeights& weights, const TensorId& y,
-                       const Activation& activation = {}, const TileList* tiles = nullptr);
+                       const Activation& activation = {}, const TileList* tiles = nullptr,
+                       HalfGuard* guard = nullptr);
 
 // dY [N,O,Oh,Ow] (before the activation) -> dX [N,I,H,W].
 TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,

@@ -35,7 +35,7 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
     const Binding from = source.binding(pass.read(source.buffer));
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
-    const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
+    const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
     gpu::ConvPush push{.source = source.view(),
                        .result = result.view(),
                        .savedOffset = epilogue.savedView.offset,
@@ -57,6 +57,9 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
                        .endPixel = grid,
                        .slope = epilogue.slope};
 
+    const KernelBlob& kernel =
+        variantFor(source, result, kernels::conv, kernels::conv_half, kernels::conv_from_half);
+
     // Slices of pixels, whole tiles each.
     const std::uint64_t workPerPixel = taps * source.desc.c * result.desc.c * phases.h * phases.w;
     const std::uint32_t tile = kPixelTile * kConvLanes;
@@ -66,9 +69,8 @@ TensorId addGatherConvPass(RenderGraph& graph, std::string_view name, const Conv
         push.firstPixel = first;
         push.endPixel = std::min(grid, first + slice);
         const std::uint32_t threads = divideUp(push.endPixel - first, tile) * kConvLanes;
-        pass.dispatch(kernels::conv,
-                      {threads, divideUp(result.desc.c, channelTile), phases.h * phases.w}, push,
-                      {from, parameters, epilogue.saved, result.binding(to)},
+        pass.dispatch(kernel, {threads, divideUp(result.desc.c, channelTile), phases.h * phases.w},
+                      push, {from, parameters, epilogue.saved, result.binding(to), epilogue.guard},
                       {channelTile, kPixelTile, turn, epilogue.flags});
     }
     return result.as(to);

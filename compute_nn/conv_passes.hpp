@@ -12,6 +12,7 @@
 namespace strandlight {
 
 struct Correlation;
+class HalfGuard;
 struct TileList;
 
 // Weights, bias or their gradients inside a block of floats.
@@ -45,6 +46,7 @@ struct ConvPass
     bool bias = false;
     BackwardEpilogue backward;
     const TileList* tiles = nullptr; // null: the whole result
+    HalfGuard* guard = nullptr;      // of a result of halves
 };
 // Chooses the kernel by the table of conv_tiles.cpp.
 TensorId addConvPass(RenderGraph& graph, std::string_view name, const ConvPass& conv,

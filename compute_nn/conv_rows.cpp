@@ -83,7 +83,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     const Binding from = source.binding(pass.read(source.buffer));
     const BufferId parameters = pass.read(weights.block);
     const BufferId to = pass.write(result.buffer);
-    const ConvEpilogue epilogue = bindEpilogue(graph, pass, conv, from);
+    const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
     const Binding packed =
         packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
     gpu::ConvRowsPush push{.source = source.view(),
@@ -111,7 +111,12 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
         conv.padding.w,
         plan.phases,
         epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0)};
-    const KernelBlob& kernel = conv.transposed ? kernels::conv_transpose_rows : kernels::conv_rows;
+    const KernelBlob& kernel =
+        conv.transposed
+            ? variantFor(source, result, kernels::conv_transpose_rows,
+                         kernels::conv_transpose_rows_half, kernels::conv_transpose_rows_from_half)
+            : variantFor(source, result, kernels::conv_rows, kernels::conv_rows_half,
+                         kernels::conv_rows_from_half);
     // Without quads nothing reads these two, and the tensors may not be whole texels.
     const Binding fromQuads = quads ? from : packed;
     const Binding savedQuads = quads ? epilogue.saved : packed;
@@ -130,7 +135,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
                                                 std::min(slice, plan.groups() - push.firstGroup)),
                                   push,
                                   {from, fromQuads, packed, parameters, epilogue.saved, savedQuads,
-                                   tiles, into, into},
+                                   tiles, into, into, epilogue.guard},
                                   constants);
         return result.as(to);
     }
@@ -141,10 +146,10 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     for (std::uint32_t first = 0; first < plan.strips; first += slice) {
         push.firstStrip = first;
         push.endStrip = std::min(plan.strips, first + slice);
-        pass.dispatch(
-            kernel, {push.endStrip - first, plan.groups(), 1}, push,
-            {from, fromQuads, packed, parameters, epilogue.saved, savedQuads, from, into, into},
-            constants);
+        pass.dispatch(kernel, {push.endStrip - first, plan.groups(), 1}, push,
+                      {from, fromQuads, packed, parameters, epilogue.saved, savedQuads, packed,
+                       into, into, epilogue.guard},
+                      constants);
     }
     return result.as(to);
 }

@@ -25,7 +25,8 @@ void checkShapes(std::string_view name, const ConvTranspose2dDesc& desc, const T
 TensorId convTranspose2dForward(RenderGraph& graph, std::string_view name,
                                 const ConvTranspose2dDesc& desc, const TensorId& x,
                                 const LayerWeights& weights, const TensorId& y,
-                                const Activation& activation, const TileList* tiles)
+                                const Activation& activation, const TileList* tiles,
+                                HalfGuard* guard)
 {
     checkShapes(name, desc, x.desc, y.desc);
     const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
@@ -39,7 +40,8 @@ TensorId convTranspose2dForward(RenderGraph& graph, std::string_view name,
                         .slope = fusedSlope(activation),
                         .bias = weights.hasBias,
                         .backward = {},
-                        .tiles = tiles},
+                        .tiles = tiles,
+                        .guard = guard},
                        x, weights, y);
 }
 

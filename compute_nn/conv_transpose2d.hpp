@@ -12,7 +12,8 @@ namespace strandlight {
 TensorId convTranspose2dForward(RenderGraph& graph, std::string_view name,
                                 const ConvTranspose2dDesc& desc, const TensorId& x,
                                 const LayerWeights& weights, const TensorId& y,
-                                const Activation& activation = {}, const TileList* tiles = nullptr);
+                                const Activation& activation = {}, const TileList* tiles = nullptr,
+                                HalfGuard* guard = nullptr);
 
 // dY [N,O,Oh,Ow] (before the activation) -> dX [N,I,H,W].
 TensorId convTranspose2dBackwardInput(RenderGraph& graph, std::string_view name,

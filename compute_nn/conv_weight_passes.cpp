@@ -68,6 +68,7 @@ BufferId addBoundCorrelationPass(RenderGraph& graph, std::string_view name,
     const TensorId& small = correlation.small;
     const TensorId& large = correlation.large;
     STRANDLIGHT_ASSERT_EQ(small.desc.n, large.desc.n);
+    STRANDLIGHT_ASSERT(small.element == Element::Float && large.element == Element::Float);
     const std::uint32_t elements =
         small.desc.c * large.desc.c * correlation.kernel.h * correlation.kernel.w;
     WeightForm form = weightForm(graph.context().cpuForms(), shuffleFlag(graph), correlation);

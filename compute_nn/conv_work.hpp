@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include "compute_nn/conv_passes.hpp"
+#include "compute_nn/half_guard.hpp"
+#include "engine/base/assert.hpp"
 #include "engine/graph/render_graph.hpp"
 #include "shaders/shared/nn_types.h"
 
@@ -49,15 +51,33 @@ struct ConvEpilogue
 {
     Binding saved; // the activated values; without them the source, which nothing reads
     gpu::TensorView savedView{};
+    Binding guard; // of a result of halves; without one the source
     std::uint32_t flags = 0;
     float slope = 1.0f;
 };
 
-inline ConvEpilogue bindEpilogue(const RenderGraph& graph, PassBuilder& pass, const ConvPass& conv,
-                                 const Binding& source)
+// The variant of a kernel that loads and stores these tensors' elements.
+inline const KernelBlob& variantFor(const TensorId& source, const TensorId& result,
+                                    const KernelBlob& floats, const KernelBlob& halves,
+                                    const KernelBlob& fromHalves)
+{
+    if (source.element == Element::Float) {
+        STRANDLIGHT_ASSERT(result.element == Element::Float);
+        return floats;
+    }
+    return result.element == Element::Half ? halves : fromHalves;
+}
+
+inline ConvEpilogue bindEpilogue(const RenderGraph& graph, PassBuilder& pass, std::string_view name,
+                                 const ConvPass& conv, const Binding& source,
+                                 const TensorId& result)
 {
     const BackwardEpilogue& backward = conv.backward;
-    ConvEpilogue epilogue{.saved = source, .slope = conv.slope};
+    ConvEpilogue epilogue{.saved = source, .guard = source, .slope = conv.slope};
+    if (result.element == Element::Half) {
+        STRANDLIGHT_ASSERT(conv.guard);
+        epilogue.guard = conv.guard->bind(pass, name);
+    }
     epilogue.flags = (conv.bias ? gpu::kConvBias : 0) |
                      (backward.accumulate ? gpu::kConvAccumulate : 0) | shuffleFlag(graph);
     if (backward.activated) {

@@ -23,10 +23,13 @@ void checkSize(std::string_view name, const TensorDesc& desc)
 
 } // namespace
 
-TensorId createTensor(RenderGraph& graph, std::string_view name, const TensorDesc& desc)
+TensorId createTensor(RenderGraph& graph, std::string_view name, const TensorDesc& desc,
+                      Element element)
 {
     checkSize(name, desc);
-    return {graph.createBuffer(name, desc.bytes()), desc, 0, desc.c};
+    TensorId tensor{graph.createBuffer(name, desc.bytes(element)), desc, 0, desc.c};
+    tensor.element = element;
+    return tensor;
 }
 
 TensorId uploadTensor(RenderGraph& graph, std::string_view name, const TensorDesc& desc,

@@ -1,4 +1,4 @@
-// A tensor on the device: planar fp32 [N,C,H,W] in a graph buffer, or a range of the channels of
+// A tensor on the device: planar [N,C,H,W] in a graph buffer, or a range of the channels of
 // one. Concatenation is two layers writing two ranges of one buffer.
 #pragma once
 
@@ -21,6 +21,7 @@ struct TensorId
     std::uint32_t firstImage = 0;     // in the buffer
     std::uint64_t boundFrom = 0;      // what is bound of the buffer: bytes from here on,
     std::uint64_t boundBytes = 0;     // so many; 0: all (tensor_parts.hpp)
+    Element element = Element::Float;
 
     bool whole() const { return firstImage == 0 && firstChannel == 0 && bufferChannels == desc.c; }
     Binding binding(BufferId version) const { return {version, boundFrom, boundBytes}; }
@@ -30,7 +31,7 @@ struct TensorId
     }
     gpu::TensorView view() const
     {
-        return {std::uint32_t(firstElement() - boundFrom / sizeof(float)),
+        return {std::uint32_t(firstElement() - boundFrom / elementBytes(element)),
                 bufferChannels * desc.pixels(), desc.h, desc.w};
     }
     // The same tensor after a pass has written it.
@@ -44,7 +45,8 @@ struct TensorId
 
 // A transient tensor; its contents are undefined until a pass writes them. Throws Error beyond 2^31
 // bytes.
-TensorId createTensor(RenderGraph& graph, std::string_view name, const TensorDesc& desc);
+TensorId createTensor(RenderGraph& graph, std::string_view name, const TensorDesc& desc,
+                      Element element = Element::Float);
 
 // A transient tensor with these values [N,C,H,W].
 TensorId uploadTensor(RenderGraph& graph, std::string_view name, const TensorDesc& desc,

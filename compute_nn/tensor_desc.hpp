@@ -1,10 +1,21 @@
-// Shapes. Tensors are planar, row-major [N,C,H,W], fp32.
+// Shapes. Tensors are planar, row-major [N,C,H,W], of floats but for what inference stores as
+// halves.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 namespace strandlight {
+
+enum class Element : std::uint32_t
+{
+    Float,
+    Half // storage only: loaded to floats, rounded when stored
+};
+constexpr std::uint32_t elementBytes(Element element)
+{
+    return element == Element::Float ? 4 : 2;
+}
 
 struct TensorDesc
 {
@@ -14,7 +25,10 @@ struct TensorDesc
     std::uint32_t w = 1;
 
     std::uint64_t elements() const { return std::uint64_t(n) * c * h * w; }
-    std::uint64_t bytes() const { return elements() * sizeof(float); }
+    std::uint64_t bytes(Element element = Element::Float) const
+    {
+        return elements() * elementBytes(element);
+    }
     std::uint32_t pixels() const { return h * w; } // of one plane
     friend bool operator==(const TensorDesc&, const TensorDesc&) = default;
 };

@@ -9,7 +9,8 @@ namespace strandlight {
 
 namespace {
 
-// A part may begin anywhere, its binding only at multiples of the alignment.
+// As if all tensors were of floats. A part may begin anywhere, its binding only at multiples of the
+// alignment.
 std::uint64_t roomOf(const RenderGraph& graph)
 {
     return graph.context().maxTensorBindingBytes() - Binding::kAlignment;
@@ -21,7 +22,8 @@ bool fitBindings(const RenderGraph& graph, std::initializer_list<TensorId> tenso
 {
     return std::all_of(tensors.begin(), tensors.end(), [&](const TensorId& t) {
         return t.boundBytes != 0 ||
-               graph.desc(t.buffer).bytes <= graph.context().maxTensorBindingBytes();
+               graph.desc(t.buffer).bytes / elementBytes(t.element) * sizeof(float) <=
+                   graph.context().maxTensorBindingBytes();
     });
 }
 
@@ -32,9 +34,10 @@ TensorId boundPart(const TensorId& tensor, std::uint32_t firstImage, std::uint32
     part.firstImage += firstImage;
     part.desc.n = images;
     const std::uint64_t planes = std::uint64_t(images - 1) * part.bufferChannels + channels;
-    const std::uint64_t from = part.firstElement() * sizeof(float);
+    const std::uint32_t bytes = elementBytes(part.element);
+    const std::uint64_t from = part.firstElement() * bytes;
     part.boundFrom = from / Binding::kAlignment * Binding::kAlignment;
-    part.boundBytes = from + planes * part.desc.pixels() * sizeof(float) - part.boundFrom;
+    part.boundBytes = from + planes * part.desc.pixels() * bytes - part.boundFrom;
     return part;
 }
 

@@ -40,6 +40,7 @@ bool isRangeOfLevel0(const UNetDesc& net, const TensorId& x)
 TensorId levelOfInput(RenderGraph& graph, const UNetDesc& net, const TensorId& x)
 {
     TensorId level{x.buffer, net.level(0, x.desc), 0, net.channels(0)};
+    level.element = x.element;
     if (isRangeOfLevel0(net, x))
         return level;
     const TensorId room = createUNetInput(graph, net, x.desc);
@@ -49,44 +50,51 @@ TensorId levelOfInput(RenderGraph& graph, const UNetDesc& net, const TensorId& x
 
 } // namespace
 
-TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x)
+TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x,
+                         Element element)
 {
     net.check(x);
     if (net.head > 0)
-        return createTensor(graph, "unet input", x);
-    const TensorId level = createTensor(graph, "level 0", net.level(0, x));
+        return createTensor(graph, "unet input", x, element);
+    const TensorId level = createTensor(graph, "level 0", net.level(0, x), element);
     return channelRange(level, net.upChannels(0), net.in);
 }
 
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
-                       const TensorId& x, const UNetTiles* tiles)
+                       const TensorId& input, const UNetTiles* tiles, HalfGuard* halves)
 {
-    net.check(x.desc);
+    net.check(input.desc);
+    const Element element = halves ? Element::Half : Element::Float;
+    const TensorId x = input.element == element
+                           ? input
+                           : storeAsHalves(graph, "input as halves", input,
+                                           createUNetInput(graph, net, input.desc, element));
     const Activation leaky = Activation::leakyRelu(net.slope);
     UNetValues v;
     std::vector<TensorId>& f = v.levels;
     v.x = x;
     for (std::uint32_t l = 0; l <= net.levels(); ++l)
-        f.push_back(l == 0 && net.head == 0
-                        ? levelOfInput(graph, net, x)
-                        : createTensor(graph, layerName("level ", l), net.level(l, x.desc)));
+        f.push_back(l == 0 && net.head == 0 ? levelOfInput(graph, net, x)
+                                            : createTensor(graph, layerName("level ", l),
+                                                           net.level(l, x.desc), element));
 
     // Down.
     if (net.head > 0)
-        written(f[0], conv2dForward(graph, "enc0", net.encoder(0), x, parameters.weights("enc0"),
-                                    skipOf(net, f, 0), leaky, tiles ? &tiles->skip[0] : nullptr));
+        written(f[0],
+                conv2dForward(graph, "enc0", net.encoder(0), x, parameters.weights("enc0"),
+                              skipOf(net, f, 0), leaky, tiles ? &tiles->skip[0] : nullptr, halves));
     for (std::uint32_t l = 1; l <= net.levels(); ++l) {
         const std::string name = layerName("enc", l);
         written(f[l], conv2dForward(graph, name, net.encoder(l), skipOf(net, f, l - 1),
                                     parameters.weights(name), skipOf(net, f, l), leaky,
-                                    tiles ? &tiles->skip[l] : nullptr));
+                                    tiles ? &tiles->skip[l] : nullptr, halves));
     }
     // Up.
     for (std::uint32_t l = net.levels(); l-- > 0;) {
         const std::string name = layerName("dec", l);
         written(f[l], convTranspose2dForward(graph, name, net.decoder(l), f[l + 1],
                                              parameters.weights(name), upOf(net, f, l), leaky,
-                                             tiles ? &tiles->up[l] : nullptr));
+                                             tiles ? &tiles->up[l] : nullptr, halves));
     }
     v.y = createTensor(graph, "y", net.last().output(f[0].desc));
     v.y = conv2dForward(graph, "out", net.last(), f[0], parameters.weights("out"), v.y, {},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compute_nn/adam_settings.hpp"
+#include "compute_nn/half_guard.hpp"
 #include "compute_nn/loss.hpp"
 #include "compute_nn/network_shapes.hpp"
 #include "compute_nn/parameters.hpp"
@@ -24,13 +25,17 @@ struct UNetValues
 
 // Where a pass writes the network's input [N,in,H,W]. Of a network without a head it is a range of
 // level 0: the input needs no copy to be concatenated. Throws Error for shapes that do not fit.
-TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x);
+TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x,
+                         Element element = Element::Float);
 
 // x [N,in,H,W] -> y [N,out,H,W]. Any tensor may be x; without a head, one that createUNetInput did
 // not make is copied once. With tiles (N = 1, x from createUNetInput) every layer computes these
-// alone, and what they do not reach of y is undefined. Throws Error for shapes that do not fit.
+// alone, and what they do not reach of y is undefined. With a guard, x and the levels are stored as
+// halves (an x of floats is copied) and y as floats; then there is no backward pass. Throws Error
+// for shapes that do not fit.
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
-                       const TensorId& x, const UNetTiles* tiles = nullptr);
+                       const TensorId& x, const UNetTiles* tiles = nullptr,
+                       HalfGuard* halves = nullptr);
 
 // dY [N,out,H,W] -> accumulates into the parameters' gradients. x gets none.
 void unetBackward(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,

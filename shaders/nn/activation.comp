@@ -1,8 +1,10 @@
 // Elementwise functions that a convolution does not fuse, forward and backward (reference/activation.hpp).
+// VARIANT to_half RESULT_HALF
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#include "nn/elements.glsl"
 #include "shared/nn_types.h"
 #include "nn/nn_math.glsl"
 
@@ -12,7 +14,7 @@ layout(constant_id = 1) const uint BACKWARD = 0; // 0: result = f(input). 1: res
 
 layout(binding = 0, r32f) uniform readonly imageBuffer inputTensor;
 layout(binding = 1, r32f) uniform readonly imageBuffer saved;
-layout(binding = 2, scalar) buffer Result { float result[]; };
+layout(binding = 2, scalar) buffer Result { RESULT_ELEMENT result[]; };
 layout(push_constant, scalar) uniform Push { ElementPush push; };
 
 float forward(float x)
@@ -52,7 +54,7 @@ void main()
     float value = imageLoad(inputTensor, int(push.source.offset + n * push.source.imageStride + r)).x;
     uint at = push.result.offset + n * push.result.imageStride + r;
     if (BACKWARD == 0u)
-        result[at] = forward(value);
+        result[at] = RESULT_ELEMENT(forward(value));
     else
-        result[at] += value * derivative(imageLoad(saved, int(push.saved.offset + n * push.saved.imageStride + r)).x);
+        result[at] = RESULT_ELEMENT(float(result[at]) + value * derivative(imageLoad(saved, int(push.saved.offset + n * push.saved.imageStride + r)).x));
 }

@@ -7,6 +7,8 @@
 //
 // Loads go through texel buffers (one hardware gather on lavapipe, against a loop of eight for storage buffers). Weights
 // are loaded by lane, eight channels at once, and handed round by shuffles; without kConvShuffle each is loaded by itself.
+// VARIANT half SOURCE_HALF RESULT_HALF
+// VARIANT from_half SOURCE_HALF
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -14,6 +16,8 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 
+#define GUARD_BINDING 4
+#include "nn/elements.glsl"
 #include "shared/nn_types.h"
 #include "nn/divide.glsl"
 
@@ -23,10 +27,10 @@ layout(constant_id = 1) const uint P = 4;  // pixels of an invocation
 layout(constant_id = 2) const uint U = 1;  // input channels per loop turn; divides their number
 layout(constant_id = 3) const uint FLAGS = 0;
 
-layout(binding = 0, r32f) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
+layout(binding = 0, SOURCE_TEXEL) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
 layout(binding = 1, r32f) uniform readonly imageBuffer parameters;  // weights and biases
-layout(binding = 2, r32f) uniform readonly imageBuffer saved;       // kConvDerivative: the activated values
-layout(binding = 3, scalar) buffer Result { float result[]; };      // [N,K',H',W']
+layout(binding = 2, SOURCE_TEXEL) uniform readonly imageBuffer saved;       // kConvDerivative: the activated values
+layout(binding = 3, scalar) buffer Result { RESULT_ELEMENT result[]; }; // [N,K',H',W']
 layout(push_constant, scalar) uniform Push { ConvPush push; };
 
 const uint kLanes = 8; // pixels that lie next to each other; also the lanes that share a weight load
@@ -141,7 +145,7 @@ void main()
                 uint at = store[j] + channel * resultPlane;
                 float value = sum[k][j] + bias;
                 if ((FLAGS & kConvAccumulate) != 0)
-                    value += result[push.result.offset + at];
+                    value += float(result[push.result.offset + at]);
                 if ((FLAGS & kConvDerivative) != 0) {
                     // The saved tensor has the result's planes but its own place in its own buffer.
                     uint n = imageIndex[j];
@@ -150,8 +154,9 @@ void main()
                 } else {
                     value = value > 0.0 ? value : value * push.slope;
                 }
-                result[push.result.offset + at] = value;
+                result[push.result.offset + at] = RESULT_ELEMENT(guarded(value));
             }
         }
     }
+    reportLargest();
 }

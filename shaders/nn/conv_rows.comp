@@ -4,6 +4,8 @@
 // Per input channel an invocation loads the window of its strip once, and its K x TAPS weights dealt to eight lanes. The
 // sums of one channel stay in registers through all taps; the window is small enough to be an operand from the stack.
 // (With the taps outermost the sums travel to the stack and back at every tap.)
+// VARIANT half SOURCE_HALF RESULT_HALF
+// VARIANT from_half SOURCE_HALF
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -60,4 +62,5 @@ void main()
                 storeFloat(target, firstChannel + k, strip.row, strip.column + n, sum[k][n] + bias);
         }
     }
+    reportLargest();
 }

@@ -10,6 +10,8 @@
 #ifndef STRANDLIGHT_NN_CONV_ROWS_GLSL
 #define STRANDLIGHT_NN_CONV_ROWS_GLSL
 
+#define GUARD_BINDING 9
+#include "nn/elements.glsl"
 #include "shared/nn_types.h"
 #include "nn/divide.glsl"
 
@@ -26,15 +28,15 @@ layout(constant_id = 9) const uint PW = 1;
 layout(constant_id = 10) const uint PHASES = 1; // workgroups that share the row phases of a transposed convolution
 layout(constant_id = 11) const uint FLAGS = 0;
 
-layout(binding = 0, r32f) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
-layout(binding = 1, rgba32f) uniform readonly imageBuffer inputQuads;
+layout(binding = 0, SOURCE_TEXEL) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
+layout(binding = 1, SOURCE_QUAD) uniform readonly imageBuffer inputQuads;
 layout(binding = 2, rgba32f) uniform readonly imageBuffer packedWeights; // conv_pack.comp
 layout(binding = 3, r32f) uniform readonly imageBuffer parameters;       // biases
-layout(binding = 4, r32f) uniform readonly imageBuffer saved;            // kConvDerivative: the activated values
-layout(binding = 5, rgba32f) uniform readonly imageBuffer savedQuads;
+layout(binding = 4, SOURCE_TEXEL) uniform readonly imageBuffer saved;    // kConvDerivative: the activated values
+layout(binding = 5, SOURCE_QUAD) uniform readonly imageBuffer savedQuads;
 layout(binding = 6, r32ui) uniform readonly uimageBuffer tiles; // kConvTiles: x | y << 16 of each active tile
-layout(binding = 7, scalar) buffer Result { float result[]; };  // [N,K',H',W']
-layout(binding = 8, scalar) buffer ResultQuads { vec4 resultQuads[]; };
+layout(binding = 7, scalar) buffer Result { RESULT_ELEMENT result[]; };  // [N,K',H',W']
+layout(binding = 8, scalar) buffer ResultQuads { RESULT_QUAD resultQuads[]; };
 layout(push_constant, scalar) uniform Push { ConvRowsPush push; };
 
 const uint kLanes = 8; // lanes that share a weight load
@@ -130,11 +132,11 @@ void storeFloat(Target to, uint channel, uint y, uint x, float value)
         return;
     uint inImage = channel * to.plane + y * to.width + x;
     if ((FLAGS & kConvAccumulate) != 0)
-        value += result[to.first + inImage];
+        value += float(result[to.first + inImage]);
     float sign = value;
     if ((FLAGS & kConvDerivative) != 0)
         sign = imageLoad(saved, int(to.firstSaved + inImage)).x;
-    result[to.first + inImage] = sign > 0.0 ? value : value * to.slope;
+    result[to.first + inImage] = RESULT_ELEMENT(guarded(sign > 0.0 ? value : value * to.slope));
 }
 
 // Four columns from x on, of which all exist or none.
@@ -144,11 +146,12 @@ void storeQuad(Target to, uint channel, uint y, uint x, vec4 value)
         return;
     uint inImage = channel * to.plane + y * to.width + x;
     if ((FLAGS & kConvAccumulate) != 0)
-        value += resultQuads[(to.first + inImage) / 4];
+        value += vec4(resultQuads[(to.first + inImage) / 4]);
     vec4 sign = value;
     if ((FLAGS & kConvDerivative) != 0)
         sign = imageLoad(savedQuads, int((to.firstSaved + inImage) / 4));
-    resultQuads[(to.first + inImage) / 4] = mix(value * to.slope, value, greaterThan(sign, vec4(0.0)));
+    vec4 activated = mix(value * to.slope, value, greaterThan(sign, vec4(0.0)));
+    resultQuads[(to.first + inImage) / 4] = RESULT_QUAD(guarded(activated));
 }
 
 #endif

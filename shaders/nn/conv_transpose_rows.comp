@@ -5,6 +5,8 @@
 // (ky,kx) of input pixel (r,c) lands on pixel (r SH - PH + ky, c SW - PW + kx), so each pixel meets the taps of its phase
 // only, and no lane multiplies by a structural zero. An invocation computes all column phases, and all row phases or,
 // where PHASES is SH, one of them: fewer sums for as many taps each. Otherwise as conv_rows.comp.
+// VARIANT half SOURCE_HALF RESULT_HALF
+// VARIANT from_half SOURCE_HALF
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -80,4 +82,5 @@ void main()
             }
         }
     }
+    reportLargest();
 }

@@ -96,7 +96,7 @@ LayerResults addLayerPasses(RenderGraph& graph, const LayerCase<Desc>& c)
     LayerWeights gradient{graph.uploadBuffer("gradient", std::span(old)), 0, count, c.bias};
 
     y = Ops::forward(graph, "forward", c.desc, x, weights, y, Activation::leakyRelu(c.kSlope),
-                     nullptr);
+                     nullptr, nullptr);
     dX = Ops::backwardInput(graph, "dX", c.desc, dY, weights, dX,
                             {.accumulate = true, .activated = x, .slope = c.kSlope});
     gradient.block = Ops::backwardWeight(graph, "dW", c.desc, x, dY, gradient);

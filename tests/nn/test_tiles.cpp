@@ -57,9 +57,11 @@ std::vector<float> run(Forward forward, const Desc& desc, const TensorDesc& xDes
     TensorId y = uploadTensor(graph, "y", yDesc, before);
     if (mask) {
         const TileList tiles = upload(graph, yDesc, *mask);
-        y = forward(graph, "tiles", desc, x, weights, y, Activation::leakyRelu(0.1f), &tiles);
+        y = forward(graph, "tiles", desc, x, weights, y, Activation::leakyRelu(0.1f), &tiles,
+                    nullptr);
     } else {
-        y = forward(graph, "whole", desc, x, weights, y, Activation::leakyRelu(0.1f), nullptr);
+        y = forward(graph, "whole", desc, x, weights, y, Activation::leakyRelu(0.1f), nullptr,
+                    nullptr);
     }
     graph.output(y.buffer);
     graph.execute();
