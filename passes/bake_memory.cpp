@@ -25,8 +25,8 @@ std::uint64_t sceneBytes(const TracedScene& scene)
            bytesOf(scene.lights) + bytesOf(scene.environment);
 }
 
-// Of the larger of the two light sets. With a bound on the error, the fit of what was kept stands
-// beside the first one.
+// Of the larger of the two light sets. What was kept is fitted in the same memory after the first
+// fit.
 std::uint64_t directBytes(const Context& context, const Atlas& atlas, const BakeSettings& settings,
                           std::uint32_t lobes)
 {
@@ -34,7 +34,7 @@ std::uint64_t directBytes(const Context& context, const Atlas& atlas, const Bake
     problem.cells = buildFitCells(atlas);
     problem.size = settings.lightfieldSize;
     problem.lobes = lobes;
-    return directFitBytes(context, problem) * (settings.lobeError > 0.0f ? 2 : 1);
+    return directFitBytes(context, problem);
 }
 
 } // namespace

@@ -7,10 +7,16 @@ namespace {
 
 using Rows = std::vector<GiRow>;
 
+GiChoice withEveryLobe(GiChoice choice)
+{
+    choice.lobeError = 0.0f;
+    return choice;
+}
+
 void addRepresentations(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 {
     const auto add = [&](const std::string& representation, std::uint32_t lobes) {
-        GiChoice choice = sweep.base;
+        GiChoice choice = withEveryLobe(sweep.base);
         choice.representation = representation;
         choice.lobes = lobes;
         rows.push_back(measure.measure("representation", choice));
@@ -27,7 +33,7 @@ void addLobes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 {
     for (const std::uint32_t lobes : sweep.lobes)
         for (const GiStorage storage : {GiStorage::Fp32, GiStorage::Fp16, GiStorage::Packed}) {
-            GiChoice choice = sweep.base;
+            GiChoice choice = withEveryLobe(sweep.base);
             choice.lobes = lobes;
             choice.storage = storage;
             rows.push_back(measure.measure("lobes and storage", choice));
@@ -36,6 +42,7 @@ void addLobes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 
 void addDropped(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
 {
+    rows.push_back(measure.measure("dropped lobes", sweep.base));
     for (const float lobeError : sweep.lobeErrors) {
         GiChoice choice = sweep.base;
         choice.lobeError = lobeError;
@@ -80,7 +87,7 @@ GiSweep smallGiSweep()
     GiSweep sweep;
     sweep.base.atlas = 56; // at 40 texels a side most charts share a texel
     sweep.lobes = {2, 4, 7, 8, 12, 16};
-    sweep.lobeErrors = {0.05f, 0.08f};
+    sweep.lobeErrors = {0.05f};
     sweep.atlases = {48, 56, 72};
     sweep.lightfields = {8, 12, 16};
     sweep.samples = {1, 2, 4, 8};
@@ -105,7 +112,7 @@ GiStudy studyGi(Context& context, const Scene& scene, const GiSweep& sweep,
     GiMeasure measure(context, scene, settings);
     GiStudy study;
     for (const std::string& fit : sweep.fits) {
-        GiChoice choice = sweep.base;
+        GiChoice choice = withEveryLobe(sweep.base);
         choice.representation = fit;
         const std::vector<GiTracePoint> trace = measure.trace(choice);
         study.traces.insert(study.traces.end(), trace.begin(), trace.end());

@@ -81,15 +81,20 @@ void addBaseFacts(const Json& rows, const std::string& scene, const Json& base, 
     const std::string better = defaultsBeatenBy(rows, scene, base);
     facts.push_back(fact(scene + ": the defaults are on the front of bytes, bake time and error",
                          better.empty() ? "yes" : "no: " + better));
+}
+
+// Against the same fit with every lobe kept.
+void addDroppedFacts(const Json& rows, const std::string& scene, const Json& whole, Json& facts)
+{
     for (const Json& row : rows)
         if (row["study"] == "gi" && row["scene"] == scene && row["knob"] == "dropped lobes")
-            facts.push_back(
-                fact(scene + ": lobes dropped at --lobe-error " + fixed(row["lobe_error"], 2),
-                     "bytes " + changeOf(row, base, "bytes_per_texel") + "; RMSE at texels " +
-                         changeOf(row, base, "rmse_texel") + ", between " +
-                         changeOf(row, base, "rmse_between") + "; FLIP " +
-                         changeOf(row, base, "flip") + ", relMSE " + changeOf(row, base, "relmse") +
-                         "; shading " + changeOf(row, base, "shading_ms")));
+            facts.push_back(fact(
+                scene + ": lobes dropped at --lobe-error " + fixed(row["lobe_error"], 2),
+                "bytes " + changeOf(row, whole, "bytes_per_texel") + "; RMSE at texels " +
+                    changeOf(row, whole, "rmse_texel") + ", between " +
+                    changeOf(row, whole, "rmse_between") + "; FLIP " +
+                    changeOf(row, whole, "flip") + ", relMSE " + changeOf(row, whole, "relmse") +
+                    "; shading " + changeOf(row, whole, "shading_ms")));
 }
 
 void addSceneFacts(const Json& rows, const std::string& scene, Json& facts)
@@ -97,6 +102,10 @@ void addSceneFacts(const Json& rows, const std::string& scene, Json& facts)
     for (const Json& row : rows)
         if (row["study"] == "gi" && row["scene"] == scene && row["knob"] == "base")
             addBaseFacts(rows, scene, row, facts);
+    for (const Json& row : rows)
+        if (row["study"] == "gi" && row["scene"] == scene && row["knob"] == "representation" &&
+            row["representation"] == toString(BakeSettings{}.fit))
+            addDroppedFacts(rows, scene, row, facts);
     const std::string others = budgetsWithoutFree(rows, scene);
     facts.push_back(fact(scene + ": free SGs have the least error from 56 bytes a texel up",
                          others.empty() ? "at every budget" : "but for " + others));
