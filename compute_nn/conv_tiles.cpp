@@ -28,7 +28,7 @@ constexpr Case kCpu[] = {
     {{kConv, {1, 1}, {1, 1}}, 8, {16, 8, 1}},
     {{kTransposed, {3, 3}, {1, 1}}, 8, {16, 8, 1}},
     {{kTransposed, {3, 3}, {2, 2}}, 8, {8, 4, 2}},
-    {{kTransposed, {4, 4}, {2, 2}}, 8, {16, 4, 1, true}},
+    {{kTransposed, {4, 4}, {2, 2}}, 8, {32, 4, 1, true}},
     {{kTransposed, {2, 2}, {2, 2}}, 8, {16, 4, 2, true}},
 };
 
