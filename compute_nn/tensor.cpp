@@ -27,7 +27,9 @@ TensorId createTensor(RenderGraph& graph, std::string_view name, const TensorDes
                       Element element)
 {
     checkSize(name, desc);
-    TensorId tensor{graph.createBuffer(name, desc.bytes(element)), desc, 0, desc.c};
+    // Whole words, as fills write them.
+    const std::uint64_t bytes = (desc.bytes(element) + 3) / 4 * 4;
+    TensorId tensor{graph.createBuffer(name, bytes), desc, 0, desc.c};
     tensor.element = element;
     return tensor;
 }

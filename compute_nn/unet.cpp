@@ -16,6 +16,20 @@ std::string layerName(const char* kind, std::uint32_t level)
     return kind + std::to_string(level);
 }
 
+// A tensor that layers write in parts. Halves are cleared: a layer over tiles also reads what no
+// tile has written, and the guard would take what was left there for overflow.
+TensorId createLevel(RenderGraph& graph, const std::string& name, const TensorDesc& desc,
+                     Element element)
+{
+    TensorId level = createTensor(graph, name, desc, element);
+    if (element == Element::Half) {
+        PassBuilder pass = graph.addTransferPass("clear " + name);
+        level = level.as(pass.write(level.buffer));
+        pass.fill(level.buffer, 0);
+    }
+    return level;
+}
+
 // The two parts of a level, [up, skip].
 TensorId upOf(const UNetDesc& net, const std::vector<TensorId>& levels, std::uint32_t level)
 {
@@ -55,8 +69,8 @@ TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDe
 {
     net.check(x);
     if (net.head > 0)
-        return createTensor(graph, "unet input", x, element);
-    const TensorId level = createTensor(graph, "level 0", net.level(0, x), element);
+        return createLevel(graph, "unet input", x, element);
+    const TensorId level = createLevel(graph, "level 0", net.level(0, x), element);
     return channelRange(level, net.upChannels(0), net.in);
 }
 
@@ -75,8 +89,8 @@ UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterI
     v.x = x;
     for (std::uint32_t l = 0; l <= net.levels(); ++l)
         f.push_back(l == 0 && net.head == 0 ? levelOfInput(graph, net, x)
-                                            : createTensor(graph, layerName("level ", l),
-                                                           net.level(l, x.desc), element));
+                                            : createLevel(graph, layerName("level ", l),
+                                                          net.level(l, x.desc), element));
 
     // Down.
     if (net.head > 0)

@@ -95,6 +95,7 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
     const glm::uvec3 size = graph.extent(input.exact);
     const TensorDesc picture = hairInputDesc(size.x, size.y);
     const std::uint32_t rows = chooseBandRows(graph, net, picture, settings);
+    const Element element = settings.halves ? Element::Half : Element::Float;
     HairComposite result = over;
     TouchedBlocks touched;
     if (settings.skipTiles)
@@ -110,9 +111,10 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
             result.tiles.insert(result.tiles.end(), layers.begin(), layers.end());
         }
         const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.blended,
-                                            input.depth, createUNetInput(graph, net, desc),
+                                            input.depth, createUNetInput(graph, net, desc, element),
                                             band.rows.tensorRow, tiles ? &tiles->input : nullptr);
-        const UNetValues values = unetForward(graph, net, parameters, x, tiles ? &*tiles : nullptr);
+        const UNetValues values =
+            unetForward(graph, net, parameters, x, tiles ? &*tiles : nullptr, settings.halves);
         addCompositePass(graph, input, values.y, band.rows, tiles ? &tiles->y : nullptr, result);
     }
     return result;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute_nn/half_guard.hpp"
 #include "compute_nn/network_shapes.hpp"
 #include "compute_nn/parameters.hpp"
 #include "compute_nn/unet_tiles.hpp"
@@ -28,6 +29,8 @@ struct HairFilterSettings
     std::uint32_t bandRows = 0;
     // Compute only what pixels with hair need, in every layer. Changes no bit either.
     bool skipTiles = true;
+    // Not null: the network's input and levels are stored as halves (--precision fp16).
+    HalfGuard* halves = nullptr;
 };
 
 struct HairComposite

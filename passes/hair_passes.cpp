@@ -245,6 +245,8 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
         firstRow + x.desc.h > wanted.h)
         throw Error("hair: the network's input " + shapeText(x.desc) + " holds no rows of " +
                     shapeText(wanted));
+    const KernelBlob& kernel =
+        x.element == Element::Half ? kernels::hair_input_half : kernels::hair_input;
     PassBuilder pass = graph.addComputePass("hair network input");
     pass.sample(samples.features);
     pass.sample(samples.shape);
@@ -257,13 +259,13 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     const Binding shape(samples.shape, Filter::Nearest), transmittance(exact, Filter::Nearest);
     if (tiles) {
         const BufferId list = pass.read(tiles->tiles);
-        pass.dispatchIndirect(kernels::hair_input, tiles->arguments, tileArguments(1, 1), push,
+        pass.dispatchIndirect(kernel, tiles->arguments, tileArguments(1, 1), push,
                               {features, shape, transmittance, planes, list, blended}, {1});
     } else {
         const std::uint32_t none[] = {0};
         const BufferId list =
             pass.read(graph.uploadBuffer("no tiles", std::span<const std::uint32_t>(none)));
-        pass.dispatch(kernels::hair_input, {x.desc.w, x.desc.h, 1}, push,
+        pass.dispatch(kernel, {x.desc.w, x.desc.h, 1}, push,
                       {features, shape, transmittance, planes, list, blended}, {0});
     }
     return x.as(planes);

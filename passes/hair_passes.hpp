@@ -64,9 +64,9 @@ HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, Buffe
 // R32F [height, width]: the product of 1 - alpha over all strands that nothing opaque hides.
 ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const HairView& view);
 
-// RGBA32F [height, width]: premultiplied radiance of all strands, blended by alpha and depth without
-// noise (shaders/hair/hair_blend.frag), and its brightness when deeper strands weigh more. `exact`
-// is that of addHairCoveragePass.
+// RGBA32F [height, width]: premultiplied radiance of all strands, blended by alpha and depth
+// without noise (shaders/hair/hair_blend.frag), and its brightness when deeper strands weigh more.
+// `exact` is that of addHairCoveragePass.
 ImageId addHairBlendPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
                          const HairView& view, const HairDepthScale& depth, ImageId exact);
 

@@ -247,13 +247,20 @@ public:
             over.radiance =
                 addHairBackdropPass(graph, buffers_, view, settings_, lights, over.radiance);
         const ParameterIds weights(graph, settings_.network->parameters);
-        const HairComposite done =
-            addHairFilterPasses(graph, settings_.network->net, weights, input, over,
-                                {.skipTiles = settings_.skipTiles});
+        std::optional<HalfGuard> guard;
+        if (settings_.halves)
+            guard.emplace(graph);
+        const HairComposite done = addHairFilterPasses(
+            graph, settings_.network->net, weights, input, over,
+            {.skipTiles = settings_.skipTiles, .halves = guard ? &*guard : nullptr});
+        if (guard)
+            guard->output(graph);
         graph.output(input.exact);
         for (const LayerTiles& layer : done.tiles)
             graph.output(layer.arguments);
         graph.run();
+        if (guard)
+            guard->check(graph);
         addTimings(out_.timings, graph.timings());
         addTiles(out_.tiles, graph, done.tiles);
         out_.exactTransmittance = graph.read(input.exact);

@@ -44,10 +44,11 @@ struct Method
     HairNetwork* network = nullptr;
     std::uint32_t lod = 1; // 0: by projected width
     bool skipTiles = true;
+    bool halves = false; // activations stored as halves
 };
 
 // The first one is what the others' errors are divided by.
-std::vector<Method> methodsOf(bool quick, std::vector<NamedNetwork>& networks)
+std::vector<Method> methodsOf(bool quick, std::vector<NamedNetwork>& networks, bool halves)
 {
     std::vector<Method> methods = {{"4 averaged"},
                                    {"16 averaged", HairFilter::Average, 4},
@@ -64,6 +65,8 @@ std::vector<Method> methodsOf(bool quick, std::vector<NamedNetwork>& networks)
     const std::string name = "4 U-Net " + networks[0].width;
     HairNetwork* first = &networks[0].network;
     methods.push_back({name + ", all tiles", HairFilter::UNet, 1, first, 1, false});
+    if (halves)
+        methods.push_back({name + ", fp16", HairFilter::UNet, 1, first, 1, true, true});
     for (const std::uint32_t lod : {2u, 4u, 0u})
         methods.push_back({name + ", lod " + (lod > 0 ? std::to_string(lod) : "auto"),
                            HairFilter::UNet, 1, first, lod});
@@ -165,7 +168,8 @@ public:
                       options_.keep ? cacheFolder() : std::filesystem::path());
         std::vector<CpuImage> pictures;
         double base = 0.0;
-        for (const Method& method : methodsOf(options_.common.quick, networks_)) {
+        for (const Method& method : methodsOf(options_.common.quick, networks_,
+                                              context_.device().missingForHalves.empty())) {
             throwIfInterrupted();
             const HairFrame frame = render(settingsOf(method));
             const HairError error = compareHair(frame, truth);
@@ -174,7 +178,7 @@ public:
             base = pictures.empty() ? error.picture.rmse : base;
             if (pictures.empty() || (method.filter == HairFilter::UNet && pictures.size() == 1))
                 pictures.push_back(frame.radiance);
-            report.add({{"name", subject_.name + " " + method.name},
+            Json row = {{"name", subject_.name + " " + method.name},
                         {"rmse", error.picture.rmse},
                         {"rmse_over_4", error.picture.rmse / base},
                         {"psnr_db", error.picture.psnr},
@@ -187,7 +191,13 @@ public:
                         {"ms_strands", millisecondsOf(moved, "hair strands")},
                         {"ms_coverage", millisecondsOf(moved, "exact coverage")},
                         {"ms_network", networkMilliseconds(moved)},
-                        {"ms_composite", millisecondsOf(moved, "composite")}});
+                        {"ms_composite", millisecondsOf(moved, "composite")}};
+            if (method.halves) {
+                HairRenderSettings floats = settingsOf(method);
+                floats.halves = false;
+                row["rmse_from_fp32"] = compareHair(frame, render(floats)).picture.rmse;
+            }
+            report.add(row);
         }
         pictures.push_back(truth.radiance);
         if (!options_.out.empty())
@@ -203,6 +213,7 @@ private:
         settings.network = method.network;
         settings.lod = method.lod;
         settings.skipTiles = method.skipTiles;
+        settings.halves = method.halves;
         return settings;
     }
 

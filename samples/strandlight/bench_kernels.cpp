@@ -33,11 +33,11 @@ Json describe(const std::string& name, const KernelMeasurement& m, const Ceiling
     return row;
 }
 
-std::vector<KernelCase> allCases()
+std::vector<KernelCase> allCases(const Context& context)
 {
     std::vector<KernelCase> cases;
     addConvBenchCases(cases);
-    addNetworkBenchCases(cases);
+    addNetworkBenchCases(cases, context.device().missingForHalves.empty());
     addSgBenchCases(cases);
     addReductionBenchCases(cases);
     addFirstRunBenchCases(cases);
@@ -50,7 +50,7 @@ int benchKernels(const BenchOptions& o)
 {
     Context context = openDevice(o.device);
     BenchReport report("bench kernels", o, context);
-    const std::vector<KernelCase> cases = allCases();
+    const std::vector<KernelCase> cases = allCases(context);
     if (std::none_of(cases.begin(), cases.end(),
                      [&](const KernelCase& c) { return report.wants(c.name); }))
         throw Error("--filter: no case's name holds '" + o.filter + "'");

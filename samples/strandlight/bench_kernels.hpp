@@ -45,7 +45,8 @@ struct KernelCase
 
 // By subject, one source file each.
 void addConvBenchCases(std::vector<KernelCase>& cases);
-void addNetworkBenchCases(std::vector<KernelCase>& cases);
+void addNetworkBenchCases(std::vector<KernelCase>& cases,
+                          bool halves); // halves: the device has them
 void addSgBenchCases(std::vector<KernelCase>& cases);
 void addReductionBenchCases(std::vector<KernelCase>& cases);
 void addFirstRunBenchCases(std::vector<KernelCase>& cases);

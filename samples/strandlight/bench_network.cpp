@@ -1,5 +1,6 @@
 // Whole networks of `strandlight bench kernels`: forward pass and training step.
 #include <cstdio>
+#include <optional>
 
 #include "compute_nn/reference/networks.hpp"
 #include "compute_nn/training_memory.hpp"
@@ -41,18 +42,34 @@ TensorDesc outputOf(const NetworkCase& c, const TensorDesc& x)
     return {x.n, c.net.out, x.h, x.w};
 }
 
+// The answer to x; with `guard` activations are stored as halves.
+BufferId addForward(RenderGraph& graph, const NetworkCase& c, Parameters& parameters,
+                    const TensorDesc& x, const std::vector<float>& values, HalfGuard* guard)
+{
+    const ParameterIds ids(graph, parameters);
+    const TensorId input = uploadTensor(graph, "x", x, values);
+    const BufferId y = unetForward(graph, c.net, ids, input, nullptr, guard).y.buffer;
+    graph.output(y);
+    if (guard)
+        guard->output(graph);
+    return y;
+}
+
 // Forward pass of a small image against the whole twin; the kernels are those of the large one.
-double forwardError(Context& context, const NetworkCase& c, Parameters& parameters)
+double forwardError(Context& context, const NetworkCase& c, Parameters& parameters, bool halves)
 {
     const std::uint32_t side = 1u << c.net.levels();
     const TensorDesc small{1, c.net.in, 3 * side, 5 * side};
     const std::vector<float> x = randomValues(small.elements(), 4);
     RenderGraph graph(context);
-    const ParameterIds ids(graph, parameters);
-    const UNetValues values = unetForward(graph, c.net, ids, uploadTensor(graph, "x", small, x));
-    graph.output(values.y.buffer);
+    std::optional<HalfGuard> guard;
+    if (halves)
+        guard.emplace(graph);
+    const BufferId answer = addForward(graph, c, parameters, small, x, guard ? &*guard : nullptr);
     graph.execute();
-    const std::vector<float> y = graph.read<float>(values.y.buffer), w = parameters.download();
+    if (guard)
+        guard->check(graph);
+    const std::vector<float> y = graph.read<float>(answer), w = parameters.download();
     const std::vector<double> target(outputOf(c, small).elements(), 0.0),
         weights(w.begin(), w.end()), input(x.begin(), x.end());
     const auto twin = reference::unet<double>(c.net, weights, small, input, target);
@@ -60,12 +77,13 @@ double forwardError(Context& context, const NetworkCase& c, Parameters& paramete
 }
 
 Timing timeForward(Context& context, const NetworkCase& c, Parameters& parameters,
-                   const TensorDesc& x, std::uint32_t runs)
+                   const TensorDesc& x, std::uint32_t runs, bool halves)
 {
     RenderGraph graph(context);
-    const ParameterIds ids(graph, parameters);
-    const TensorId input = uploadTensor(graph, "x", x, randomValues(x.elements(), 5));
-    graph.output(unetForward(graph, c.net, ids, input).y.buffer);
+    std::optional<HalfGuard> guard;
+    if (halves)
+        guard.emplace(graph);
+    addForward(graph, c, parameters, x, randomValues(x.elements(), 5), guard ? &*guard : nullptr);
     return timeGraph(graph, runs);
 }
 
@@ -91,9 +109,22 @@ KernelMeasurement measureForward(Context& context, const NetworkCase& c, const B
     Parameters parameters(context, c.net.parameters(), kSeed);
     const TensorDesc x = inputOf(c, o.quick);
     KernelMeasurement m;
-    m.error = forwardError(context, c, parameters);
-    m.timing = timeForward(context, c, parameters, x, o.quick ? 2 : kRuns);
+    m.error = forwardError(context, c, parameters, false);
+    m.timing = timeForward(context, c, parameters, x, o.quick ? 2 : kRuns, false);
     m.flops = forwardFlops(c.net, x);
+    return m;
+}
+
+// Activations as halves: one rounding of 2^-11 a stored value, so an error of that size.
+KernelMeasurement measureHalves(Context& context, const NetworkCase& c, const BenchOptions& o)
+{
+    KernelMeasurement m = measureForward(context, c, o);
+    const double floats = m.timing.median;
+    Parameters parameters(context, c.net.parameters(), kSeed);
+    m.error = forwardError(context, c, parameters, true);
+    m.tolerance = 0x1p-10 * (2.0 * c.net.levels() + 1.0);
+    m.timing = timeForward(context, c, parameters, inputOf(c, o.quick), o.quick ? 2 : kRuns, true);
+    m.more["over_fp32"] = m.timing.median / floats;
     return m;
 }
 
@@ -122,13 +153,18 @@ std::vector<NetworkCase> networks()
 
 } // namespace
 
-void addNetworkBenchCases(std::vector<KernelCase>& cases)
+void addNetworkBenchCases(std::vector<KernelCase>& cases, bool halves)
 {
     for (const NetworkCase& c : networks()) {
         cases.push_back(
             {c.name + " forward", [c](Context& context, const BenchOptions& o, const Ceilings&) {
                  return measureForward(context, c, o);
              }});
+        if (halves)
+            cases.push_back({c.name + " forward, fp16 storage",
+                             [c](Context& context, const BenchOptions& o, const Ceilings&) {
+                                 return measureHalves(context, c, o);
+                             }});
         cases.push_back({c.name + " training step",
                          [c](Context& context, const BenchOptions& o, const Ceilings&) {
                              return measureStep(context, c, o);

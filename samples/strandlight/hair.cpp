@@ -32,6 +32,7 @@ struct Options
     std::uint32_t samples = kSamplesPerFrame;
     std::string filter = "average";
     std::string weights;
+    std::string precision = "fp32";
     std::string lod = "auto";
     bool stats = false;
     std::string json;
@@ -75,6 +76,8 @@ HairFilter filterOf(const Options& o)
                     std::to_string(o.samples));
     if (chosen->filter != HairFilter::UNet && !o.weights.empty())
         throw Error("--weights: only --filter unet has any");
+    if (chosen->filter != HairFilter::UNet && o.precision != "fp32")
+        throw Error("--precision: only --filter unet has any");
     return chosen->filter;
 }
 
@@ -128,6 +131,7 @@ Json describe(const std::string& command, const Options& o, const Context& conte
                         {"samples", o.settings.frames * kSamplesPerFrame},
                         {"filter", o.filter},
                         {"weights", o.weights},
+                        {"precision", o.precision},
                         {"frame", o.settings.frameIndex},
                         {"shadows", o.settings.shadows},
                         {"exposure", o.view.exposure}};
@@ -217,6 +221,11 @@ Command addHairRender(CLI::App& parent)
         ->check(CLI::IsMember(filterNames()));
     app->add_option("--weights", o->weights, "Of the network; default: those built in")
         ->type_name("F.safetensors");
+    app->add_option("--precision", o->precision,
+                    "How the network's activations are stored; sums are fp32 always")
+        ->type_name("fp32|fp16")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"fp32", "fp16"}));
     addNumber(*app, "--frame", o->settings.frameIndex, "Another frame has other noise", 0u,
               1u << 24);
     app->add_option("--lod", o->lod,
@@ -231,6 +240,7 @@ Command addHairRender(CLI::App& parent)
     return {app, [o] {
                 o->settings.frames = framesOf(o->samples, "--samples");
                 o->settings.filter = filterOf(*o);
+                o->settings.halves = o->precision == "fp16";
                 o->settings.lod = parseLod(o->lod);
                 return run("hair render", *o);
             }};

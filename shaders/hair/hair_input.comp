@@ -1,8 +1,10 @@
 // The samples of the features and shape images as planes of floats: what the filter network reads. Past the picture's
 // border, up to the size that the network takes, the planes say "no hair".
+// VARIANT half RESULT_HALF
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "nn/elements.glsl"
 #include "shared/hair_types.h"
 #include "nn/nn_math.glsl"
 #include "nn/tiles.glsl"
@@ -13,7 +15,7 @@ layout(constant_id = 0) const uint TILES = 0; // 1: over a list of tiles
 layout(binding = 0) uniform sampler2DMS features; // brightness, illumination, transparency, depth
 layout(binding = 1) uniform sampler2DMS shape;    // tangent
 layout(binding = 2) uniform sampler2D exact;      // transmittance
-layout(binding = 3, scalar) writeonly buffer Planes { float planes[]; };
+layout(binding = 3, scalar) writeonly buffer Planes { RESULT_ELEMENT planes[]; };
 layout(binding = 4, r32ui) uniform readonly uimageBuffer tiles;
 layout(binding = 5, rgba32f) uniform readonly image2D blended; // premultiplied radiance, deep brightness
 layout(push_constant, scalar) uniform Push { HairInputPush push; };
@@ -34,15 +36,15 @@ void main()
         // The tangent's sign says where the root is, which must not matter: the double angle. (0,0) without hair.
         vec2 along = inside ? texelFetch(shape, from, s).xy : vec2(0.0);
         uint first = at + uint(s) * plane;
-        planes[first] = nnLog1p(value.x < 0.0 ? 0.0 : value.x);
-        planes[first + 4u * plane] = value.y;
-        planes[first + 8u * plane] = value.z;
-        planes[first + 12u * plane] = value.z < 0.5 ? (value.w - push.depthOffset) * push.depthScale : 0.0;
-        planes[first + 16u * plane] = along.x * along.x - along.y * along.y;
-        planes[first + 20u * plane] = 2.0 * along.x * along.y;
+        planes[first] = RESULT_ELEMENT(nnLog1p(value.x < 0.0 ? 0.0 : value.x));
+        planes[first + 4u * plane] = RESULT_ELEMENT(value.y);
+        planes[first + 8u * plane] = RESULT_ELEMENT(value.z);
+        planes[first + 12u * plane] = RESULT_ELEMENT(value.z < 0.5 ? (value.w - push.depthOffset) * push.depthScale : 0.0);
+        planes[first + 16u * plane] = RESULT_ELEMENT(along.x * along.x - along.y * along.y);
+        planes[first + 20u * plane] = RESULT_ELEMENT(2.0 * along.x * along.y);
     }
-    planes[at + kHairInputExact * plane] = inside ? texelFetch(exact, from, 0).x : 1.0;
+    planes[at + kHairInputExact * plane] = RESULT_ELEMENT(inside ? texelFetch(exact, from, 0).x : 1.0);
     vec4 mean = inside ? imageLoad(blended, from) : vec4(0.0);
-    planes[at + kHairInputBlended * plane] = nnLog1p(dot(mean.rgb, vec3(0.2126, 0.7152, 0.0722)));
-    planes[at + kHairInputDeep * plane] = nnLog1p(mean.a);
+    planes[at + kHairInputBlended * plane] = RESULT_ELEMENT(nnLog1p(dot(mean.rgb, vec3(0.2126, 0.7152, 0.0722))));
+    planes[at + kHairInputDeep * plane] = RESULT_ELEMENT(nnLog1p(mean.a));
 }

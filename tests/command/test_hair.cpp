@@ -137,6 +137,8 @@ TEST_CASE("hair of a file is drawn, and its broken forms are refused before any 
     checkFails(runCommand({"hair", "render", hair, "-o", "none.jpg"}), ".jpg");
     checkFails(runCommand(render(none, {"--filter", "unet", "--samples", "8"})), "four samples");
     checkFails(runCommand(render(none, {"--weights", "x.safetensors"})), "--filter unet");
+    checkFails(runCommand(render(none, {"--precision", "fp16"})), "--filter unet");
+    checkFails(runCommand(render(none, {"--precision", "fp8"})), "--precision");
     checkFails(runCommand(render(none, {"--filter", "unet", "--weights", "x.safetensors"})),
                "x.safetensors");
     checkFails(runCommand({"hair", "-o", none}), "");

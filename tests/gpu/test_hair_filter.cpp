@@ -2,6 +2,7 @@
 // strand touches stays as it is.
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include <doctest/doctest.h>
 
@@ -46,7 +47,8 @@ struct Filtered
 
 // A picture of the background's size.
 Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
-                const CpuImage& background, const HairStrands& hair = someStrands())
+                const CpuImage& background, const HairStrands& hair = someStrands(),
+                bool halves = false)
 {
     const std::uint32_t width = background.width, height = background.height;
     const Camera camera = pixelCamera(height);
@@ -73,7 +75,13 @@ Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
     input.blended = addHairBlendPass(graph, buffers, shaded, view, input.depth, input.exact);
     const ParameterIds weights(graph, network.parameters);
     const HairComposite over{graph.importImage(filtered), graph.importImage(radiance)};
-    addHairFilterPasses(graph, network.net, weights, input, over, settings);
+    std::optional<HalfGuard> guard;
+    HairFilterSettings with = settings;
+    if (halves)
+        with.halves = &guard.emplace(graph);
+    addHairFilterPasses(graph, network.net, weights, input, over, with);
+    if (guard)
+        guard->output(graph);
     const TensorId planes =
         addHairInputPass(graph, input.samples, input.exact, input.blended, input.depth,
                          createTensor(graph, "planes", hairInputDesc(width, height)));
@@ -81,6 +89,8 @@ Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
     graph.output(input.blended);
     graph.output(planes.buffer);
     graph.run();
+    if (guard)
+        guard->check(graph);
     CHECK_EQ(context().validationMessages(), 0);
     return {graph.read(input.blended), graph.read(input.exact), filtered.download(),
             radiance.download(), graph.read<float>(planes.buffer)};
@@ -238,4 +248,28 @@ TEST_CASE("hair filter: a picture by a network, twice the same, and what it refu
     HairNetwork wrong = someNetwork(UNetDesc{});
     settings.network = &wrong;
     CHECK_THROWS_WITH_AS((void)render(), doctest::Contains("24 planes to 3"), Error);
+}
+
+TEST_CASE("hair filter: activations as halves change the picture by their rounding, tiles no bit")
+{
+    if (!context().device().missingForHalves.empty()) {
+        MESSAGE("no halves: the device lacks " << context().device().missingForHalves);
+        return;
+    }
+    HairNetwork network = someNetwork(hairUNet(HairUNetSize::Small));
+    const HairStrands hair = someStrands();
+    const CpuImage floats = filter(network, {}, gradient(), hair).radiance;
+    const CpuImage halves = filter(network, {}, gradient(), hair, true).radiance;
+    CHECK(sameBytes(halves, filter(network, {.bandRows = 24}, gradient(), hair, true).radiance));
+    CHECK(
+        sameBytes(halves, filter(network, {.skipTiles = false}, gradient(), hair, true).radiance));
+    // Each stored value is off by up to 2^-10 of itself, those of a pixel on some ten ways to it.
+    double difference = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < floats.pixels.size(); ++i) {
+        const glm::dvec3 a(floats.pixels[i]), b(halves.pixels[i]);
+        difference += glm::dot(a - b, a - b);
+        size += glm::dot(a, a);
+    }
+    CHECK_LE(std::sqrt(difference / size), 10.0 * 0x1p-10);
+    CHECK_GT(difference, 0.0);
 }
