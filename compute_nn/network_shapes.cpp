@@ -62,13 +62,13 @@ UNetDesc hairUNet(HairUNetSize size)
 {
     switch (size) {
     case HairUNetSize::Small:
-        return {.in = 27, .out = 12, .head = 0, .down = {16, 24, 32}, .up = {24, 16, 16}};
+        return {.in = 26, .out = 12, .head = 0, .down = {16, 24, 32}, .up = {24, 16, 16}};
     case HairUNetSize::Medium:
-        return {.in = 27, .out = 12, .head = 0, .down = {32, 48, 64}, .up = {48, 32, 16}};
+        return {.in = 26, .out = 12, .head = 0, .down = {32, 48, 64}, .up = {48, 32, 16}};
     case HairUNetSize::Large:
         break;
     }
-    return {.in = 27, .out = 12, .head = 16, .down = {40, 56, 80}, .up = {56, 40, 24}};
+    return {.in = 26, .out = 12, .head = 16, .down = {40, 56, 80}, .up = {56, 40, 24}};
 }
 
 UNetDesc benchmarkUNet()

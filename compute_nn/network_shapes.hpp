@@ -104,7 +104,7 @@ enum class HairUNetSize : std::uint32_t
     Large
 };
 
-// The hair filter: 27 planes -> brightness, illumination, transmittance and the nine logits of a
+// The hair filter: 26 planes -> brightness, illumination, transmittance and the nine logits of a
 // kernel (passes/hair_filter.hpp). Without a head, as small and medium, the planes themselves are
 // the last skip.
 UNetDesc hairUNet(HairUNetSize size = HairUNetSize::Medium);

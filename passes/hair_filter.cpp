@@ -46,39 +46,38 @@ std::uint32_t chooseBandRows(const RenderGraph& graph, const UNetDesc& net,
     return (picture.h + 8 * bands - 1) / (8 * bands) * 8;
 }
 
-TouchedBlocks addTouchedPass(RenderGraph& graph, ImageId exact)
+TouchedBlocks addTouchedPass(RenderGraph& graph, ImageId blended)
 {
-    const glm::uvec3 size = graph.extent(exact);
+    const glm::uvec3 size = graph.extent(blended);
     TouchedBlocks touched{{}, (size.x + 7) / 8, (size.y + 7) / 8};
     PassBuilder pass = graph.addComputePass("hair touched");
-    pass.sample(exact);
+    pass.read(blended);
     touched.buffer = pass.write(graph.createBuffer(
         "touched blocks", std::uint64_t(touched.across) * touched.down * sizeof(std::uint32_t)));
     const gpu::HairTouchedPush push{size.x, size.y, touched.across, touched.down};
     pass.dispatch(kernels::hair_touched, {touched.across, touched.down, 1}, push,
-                  {Binding(exact, Filter::Nearest), touched.buffer});
+                  {blended, touched.buffer});
     return touched;
 }
 
 void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const TensorId& y,
                       const TileRows& rows, const TileList* tiles, HairComposite& over)
 {
-    const glm::uvec3 size = graph.extent(input.exact);
+    const glm::uvec3 size = graph.extent(input.blended);
     PassBuilder pass = graph.addComputePass("hair composite");
     const BufferId answer = pass.read(y.buffer);
     const BufferId list = tiles ? pass.read(tiles->tiles) : answer;
     const ImageId blended = pass.read(input.blended);
-    const Binding exact(pass.sample(input.exact), Filter::Nearest);
     over.filtered = pass.write(over.filtered);
     over.radiance = pass.write(over.radiance);
     const gpu::HairCompositePush push{
         y.view(), size.x, size.y, rows.firstRow, std::min(rows.endRow, size.y), rows.tensorRow};
     if (tiles)
         pass.dispatchIndirect(kernels::hair_composite, tiles->arguments, tileArguments(1, 1), push,
-                              {answer, blended, exact, over.filtered, over.radiance, list}, {1});
+                              {answer, blended, over.filtered, over.radiance, list}, {1});
     else
         pass.dispatch(kernels::hair_composite, {y.desc.w, y.desc.h, 1}, push,
-                      {answer, blended, exact, over.filtered, over.radiance, list}, {0});
+                      {answer, blended, over.filtered, over.radiance, list}, {0});
 }
 
 } // namespace
@@ -92,14 +91,14 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
                     std::to_string(net.out) + " with " + std::to_string(net.levels()) +
                     " levels, it must be " + std::to_string(gpu::kHairInputPlanes) + " to " +
                     std::to_string(gpu::kHairOutputs) + " with at most 3");
-    const glm::uvec3 size = graph.extent(input.exact);
+    const glm::uvec3 size = graph.extent(input.blended);
     const TensorDesc picture = hairInputDesc(size.x, size.y);
     const std::uint32_t rows = chooseBandRows(graph, net, picture, settings);
     const Element element = settings.halves ? Element::Half : Element::Float;
     HairComposite result = over;
     TouchedBlocks touched;
     if (settings.skipTiles)
-        touched = addTouchedPass(graph, input.exact);
+        touched = addTouchedPass(graph, input.blended);
     for (std::uint32_t first = 0; first < picture.h; first += rows) {
         const Band band = bandAt(first, rows, picture.h);
         TensorDesc desc = picture;
@@ -110,8 +109,8 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
             const std::vector<LayerTiles> layers = layerTiles(net, desc, *tiles);
             result.tiles.insert(result.tiles.end(), layers.begin(), layers.end());
         }
-        const TensorId x = addHairInputPass(graph, input.samples, input.exact, input.blended,
-                                            input.depth, createUNetInput(graph, net, desc, element),
+        const TensorId x = addHairInputPass(graph, input.samples, input.blended, input.depth,
+                                            createUNetInput(graph, net, desc, element),
                                             band.rows.tensorRow, tiles ? &tiles->input : nullptr);
         const UNetValues values =
             unetForward(graph, net, parameters, x, tiles ? &*tiles : nullptr, settings.halves);

@@ -17,7 +17,6 @@ namespace strandlight {
 struct HairFilterInput
 {
     HairSampleIds samples; // with features
-    ImageId exact;         // R32F (addHairCoveragePass)
     ImageId blended;       // RGBA32F (addHairBlendPass)
     HairDepthScale depth;
 };
@@ -40,8 +39,8 @@ struct HairComposite
     std::vector<LayerTiles> tiles; // of every band's layers; empty without skipTiles
 };
 
-// `over` holds zeros in `filtered` and the background in `radiance`. Pixels whose exact
-// transmittance is 1 keep both. Throws Error when the network is not one of 27 planes to 12 whose
+// `over` holds zeros in `filtered` and the background in `radiance`. Pixels whose blended
+// transmittance is 1 keep both. Throws Error when the network is not one of 26 planes to 12 whose
 // levels divide 8.
 HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
                                   const ParameterIds& parameters, const HairFilterInput& input,

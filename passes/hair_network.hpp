@@ -17,7 +17,7 @@ struct HairNetwork
 };
 
 // A safetensors file in PyTorch's layout (unet_file.hpp). Throws FileError naming tensor and
-// shapes when it is no network of 25 planes to 12.
+// shapes when it is no network of 26 planes to 12.
 HairNetwork loadHairNetwork(Context& context, const std::filesystem::path& path);
 
 // The weights that the program was built with (passes/weights/hair_unet.safetensors). Throws Error

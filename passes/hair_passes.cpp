@@ -9,7 +9,7 @@
 namespace strandlight {
 namespace {
 
-static_assert(sizeof(gpu::HairStrandPush) == 112 && sizeof(gpu::HairOpaquePush) == 100 &&
+static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 100 &&
               sizeof(gpu::HairShadePush) == 56 && sizeof(gpu::HairLight) == 120 &&
               sizeof(gpu::HairInputPush) == 36);
 
@@ -150,52 +150,13 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
     drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_unhidden_frag,
                Blend::Multiply);
     const StrandIds strands = readStrands(graph, pass, buffers);
-    gpu::HairStrandPush push = strandPush(buffers, view);
-    push.border = 1.0f; // half a pixel on each side for the box filter of its edge
     const RasterDesc raster{.vertex = &kernels::hair_silhouette_vert,
                             .fragment = &kernels::hair_coverage_frag,
                             .depthWrite = false,
                             .blend = Blend::Multiply};
-    pass.draw(raster, buffers.segmentCount * 6, 1, push,
+    pass.draw(raster, buffers.segmentCount * 6, 1, strandAreaPush(buffers, view),
               {strands.points, strands.tangents, strands.segments});
     return product;
-}
-
-ImageId addHairBlendPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
-                         const HairView& view, const HairDepthScale& depth, ImageId exact)
-{
-    const ImageDesc desc{view.width, view.height, 1, Format::RGBA32F, 1};
-    ImageId near = graph.createImage("hair weighted radiance", desc);
-    ImageId deep = graph.createImage("hair weighted brightness", desc.with(Format::RG32F));
-    {
-        PassBuilder pass = graph.addRasterPass("hair blend");
-        near = pass.color(near, {true, glm::vec4(0.0f)});
-        deep = pass.color(deep, {true, glm::vec4(0.0f)});
-        [[maybe_unused]] const ImageId hidden =
-            pass.depth(graph.createImage("hair blend depth", desc.with(Format::Depth32F)));
-        drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_unlit_frag, Blend::Add);
-        const StrandIds strands = readStrands(graph, pass, buffers);
-        pass.read(shaded);
-        gpu::HairStrandPush push = strandPush(buffers, view);
-        push.border = 1.0f; // as in the coverage pass
-        push.blendDepth = depth.offset;
-        push.blendScale = depth.scale;
-        const RasterDesc raster{.vertex = &kernels::hair_blend_vert,
-                                .fragment = &kernels::hair_blend_frag,
-                                .depthWrite = false,
-                                .blend = Blend::Add};
-        pass.draw(raster, buffers.segmentCount * 6, 1, push,
-                  {strands.points, strands.tangents, strands.segments, shaded});
-    }
-    PassBuilder pass = graph.addComputePass("hair blend resolve");
-    for (const ImageId image : {near, deep, exact})
-        pass.sample(image);
-    const ImageId blended = pass.write(graph.createImage("hair blended", desc));
-    pass.dispatch(kernels::hair_blend_resolve, {view.width, view.height, 1},
-                  gpu::HairResolvePush{view.width, view.height, 1.0f, 1},
-                  {Binding(near, Filter::Nearest), Binding(deep, Filter::Nearest),
-                   Binding(exact, Filter::Nearest), blended});
-    return blended;
 }
 
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
@@ -233,9 +194,9 @@ TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height)
     return {1, gpu::kHairInputPlanes, padded(height), padded(width)};
 }
 
-TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          ImageId blended, const HairDepthScale& depth, const TensorId& x,
-                          std::uint32_t firstRow, const TileList* tiles)
+TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId blended,
+                          const HairDepthScale& depth, const TensorId& x, std::uint32_t firstRow,
+                          const TileList* tiles)
 {
     if (!samples.features.valid() || !samples.shape.valid())
         throw Error("hair: the network's input needs strands drawn with features");
@@ -250,23 +211,22 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     PassBuilder pass = graph.addComputePass("hair network input");
     pass.sample(samples.features);
     pass.sample(samples.shape);
-    pass.sample(exact);
     pass.read(blended);
     const BufferId planes = pass.write(x.buffer);
     const gpu::HairInputPush push{x.view(), firstRow,     extent.x,
                                   extent.y, depth.offset, depth.scale};
     const Binding features(samples.features, Filter::Nearest);
-    const Binding shape(samples.shape, Filter::Nearest), transmittance(exact, Filter::Nearest);
+    const Binding shape(samples.shape, Filter::Nearest);
     if (tiles) {
         const BufferId list = pass.read(tiles->tiles);
         pass.dispatchIndirect(kernel, tiles->arguments, tileArguments(1, 1), push,
-                              {features, shape, transmittance, planes, list, blended}, {1});
+                              {features, shape, planes, list, blended}, {1});
     } else {
         const std::uint32_t none[] = {0};
         const BufferId list =
             pass.read(graph.uploadBuffer("no tiles", std::span<const std::uint32_t>(none)));
         pass.dispatch(kernel, {x.desc.w, x.desc.h, 1}, push,
-                      {features, shape, transmittance, planes, list, blended}, {0});
+                      {features, shape, planes, list, blended}, {0});
     }
     return x.as(planes);
 }

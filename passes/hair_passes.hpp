@@ -64,12 +64,6 @@ HairSampleIds addHairStrandsPass(RenderGraph& graph, HairBuffers& buffers, Buffe
 // R32F [height, width]: the product of 1 - alpha over all strands that nothing opaque hides.
 ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const HairView& view);
 
-// RGBA32F [height, width]: premultiplied radiance of all strands, blended by alpha and depth
-// without noise (shaders/hair/hair_blend.frag), and its brightness when deeper strands weigh more.
-// `exact` is that of addHairCoveragePass.
-ImageId addHairBlendPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
-                         const HairView& view, const HairDepthScale& depth, ImageId exact);
-
 // Adds weight times the mean of the first `count` of the four samples to the sums.
 HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, HairSums sums,
                             float weight, std::uint32_t count = 4);
@@ -79,14 +73,15 @@ HairSums addHairResolvePass(RenderGraph& graph, const HairSampleIds& samples, Ha
 ImageId addHairIlluminationPass(RenderGraph& graph, const HairSampleIds& samples, ImageId sum,
                                 float weight);
 
-// [1,27,H,W] of the network's input: the picture's sides, rounded up to multiples of 8.
+// [1,26,H,W] of the network's input: the picture's sides, rounded up to multiples of 8.
 TensorDesc hairInputDesc(std::uint32_t width, std::uint32_t height);
 
 // Writes what a network reads into x, planes as kHairInputPlanes says; x is of hairInputDesc, or
 // holds the rows of it from `firstRow` on, and may be a channel range (createUNetInput). With tiles
-// only in those. Throws Error when x is none of these, or when the samples came without features.
-TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId exact,
-                          ImageId blended, const HairDepthScale& depth, const TensorId& x,
+// only in those. `blended` is that of addHairBlendPass. Throws Error when x is none of these, or
+// when the samples came without features.
+TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, ImageId blended,
+                          const HairDepthScale& depth, const TensorId& x,
                           std::uint32_t firstRow = 0, const TileList* tiles = nullptr);
 
 } // namespace strandlight

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "engine/base/error.hpp"
+#include "passes/hair_blend.hpp"
+#include "passes/hair_counts.hpp"
 #include "passes/hair_filter.hpp"
 #include "passes/hair_lobe_passes.hpp"
 #include "passes/hair_network.hpp"
@@ -54,40 +56,11 @@ void addTimings(std::vector<PassTiming>& sum, const std::vector<PassTiming>& mor
     }
 }
 
-// Bands together.
-void addTiles(std::vector<HairTileCount>& sum, const RenderGraph& graph,
-              const std::vector<LayerTiles>& layers)
-{
-    for (const LayerTiles& layer : layers) {
-        auto same = std::find_if(sum.begin(), sum.end(),
-                                 [&](const HairTileCount& t) { return t.layer == layer.layer; });
-        if (same == sum.end())
-            same = sum.insert(same, HairTileCount{layer.layer, layer.level});
-        same->active += graph.read<std::uint32_t>(layer.arguments).front();
-        same->all += layer.all;
-        same->work += double(layer.work);
-    }
-}
-
 CpuImage backgroundPicture(const HairRenderSettings& settings)
 {
     if (settings.background)
         return *settings.background;
     return CpuImage(settings.width, settings.height, glm::vec4(settings.backgroundColor, 1.0f));
-}
-
-void countBlocks(HairFrame& frame)
-{
-    constexpr std::uint32_t kSide = 8;
-    const CpuImage& exact = frame.exactTransmittance;
-    const std::uint32_t across = (exact.width + kSide - 1) / kSide;
-    std::vector<std::uint8_t> touched(std::size_t(across) * ((exact.height + kSide - 1) / kSide));
-    for (std::uint32_t y = 0; y < exact.height; ++y)
-        for (std::uint32_t x = 0; x < exact.width; ++x)
-            if (exact.at(x, y).x < 1.0f)
-                touched[std::size_t(y / kSide) * across + x / kSide] = 1;
-    frame.blocks = std::uint32_t(touched.size());
-    frame.emptyBlocks = std::uint32_t(std::count(touched.begin(), touched.end(), 0));
 }
 
 // Hair over what is behind it. `behind` is premultiplied by the samples that showed it.
@@ -137,6 +110,7 @@ public:
         view_.height = settings.height;
         view_.alpha = settings.alpha;
         view_.jitter = settings.lensShift;
+        picture_ = {settings.width, settings.height, 1, Format::RGBA32F, 1};
         depth_ = hairDepthScale(hair, camera);
         planShadows(hair);
     }
@@ -168,9 +142,8 @@ public:
 
     void averageFrames()
     {
-        const ImageDesc desc{settings_.width, settings_.height, 1, Format::RGBA32F, 1};
-        Image hair(context_, desc, "hair sum");
-        Image behind(context_, desc, "behind sum");
+        Image hair(context_, picture_, "hair sum");
+        Image behind(context_, picture_, "behind sum");
         HairView view = view_;
         view.trueWidth = settings_.mode == HairMode::Reference;
         for (std::uint32_t i = 0; i < settings_.frames; ++i) {
@@ -192,31 +165,22 @@ public:
         composite(out_, behind.download(), settings_);
     }
 
-    // All strands without samples.
+    // All strands, without a network.
     void blendFrame()
     {
-        Image radiance(context_, {settings_.width, settings_.height, 1, Format::RGBA32F, 1},
-                       "background");
+        Image radiance(context_, picture_, "hair over background");
         RenderGraph graph(context_);
         graph.setTimings(true);
-        const ImageId exact = addHairCoveragePass(graph, buffers_, view_);
-        const ImageId blended = addHairBlendPass(
-            graph, buffers_, graph.importBuffer(buffers_.shaded), view_, depth_, exact);
-        if (settings_.background)
-            radiance.upload(*settings_.background);
-        else
-            addHairBackdropPass(graph, buffers_, view_, settings_, std::uint32_t(lights_.size()),
-                                graph.importImage(radiance));
+        const ImageId blended = addBlended(graph).image;
+        addBackground(graph, radiance);
         graph.output(blended);
-        graph.output(exact);
         graph.run();
         addTimings(out_.timings, graph.timings());
-        out_.exactTransmittance = graph.read(exact);
         out_.hair = graph.read(blended);
         out_.radiance = radiance.download();
+        keepTransmittance(out_.hair);
         for (std::size_t i = 0; i < out_.hair.pixels.size(); ++i) {
-            glm::vec4& hair = out_.hair.pixels[i];
-            hair.w = out_.exactTransmittance.pixels[i].x;
+            const glm::vec4& hair = out_.hair.pixels[i];
             glm::vec4& pixel = out_.radiance.pixels[i];
             pixel = glm::vec4(glm::vec3(hair) + hair.w * glm::vec3(pixel), 1.0f);
         }
@@ -225,45 +189,30 @@ public:
     // One frame through the network.
     void filterFrame()
     {
-        const ImageDesc desc{settings_.width, settings_.height, 1, Format::RGBA32F, 1};
-        Image filtered(context_, desc, "filtered hair");
-        Image radiance(context_, desc, "hair over background");
-        const auto lights = std::uint32_t(lights_.size());
-        HairView view = view_;
-        view.frame = settings_.frameIndex;
+        Image filtered(context_, picture_, "filtered hair");
+        Image radiance(context_, picture_, "hair over background");
         RenderGraph graph(context_);
         graph.setTimings(true);
-        HairFilterInput input;
-        input.samples = addHairStrandsPass(graph, buffers_, graph.importBuffer(buffers_.shaded),
-                                           view, settings_, lights, false, true);
-        input.exact = addHairCoveragePass(graph, buffers_, view);
-        input.blended = addHairBlendPass(graph, buffers_, graph.importBuffer(buffers_.shaded), view,
-                                         depth_, input.exact);
-        input.depth = depth_;
-        HairComposite over{graph.importImage(filtered), graph.importImage(radiance)};
-        if (settings_.background)
-            radiance.upload(*settings_.background);
-        else
-            over.radiance =
-                addHairBackdropPass(graph, buffers_, view, settings_, lights, over.radiance);
+        const Blended blended = addBlended(graph);
+        const HairComposite over{graph.importImage(filtered), addBackground(graph, radiance)};
         const ParameterIds weights(graph, settings_.network->parameters);
         std::optional<HalfGuard> guard;
         if (settings_.halves)
             guard.emplace(graph);
         const HairComposite done = addHairFilterPasses(
-            graph, settings_.network->net, weights, input, over,
+            graph, settings_.network->net, weights, {blended.samples, blended.image, depth_}, over,
             {.skipTiles = settings_.skipTiles, .halves = guard ? &*guard : nullptr});
         if (guard)
             guard->output(graph);
-        graph.output(input.exact);
+        graph.output(blended.image);
         for (const LayerTiles& layer : done.tiles)
             graph.output(layer.arguments);
         graph.run();
         if (guard)
             guard->check(graph);
         addTimings(out_.timings, graph.timings());
-        addTiles(out_.tiles, graph, done.tiles);
-        out_.exactTransmittance = graph.read(input.exact);
+        out_.tiles = countHairTiles(graph, done.tiles);
+        keepTransmittance(graph.read(blended.image));
         out_.radiance = radiance.download();
         out_.hair = filtered.download();
         for (glm::vec4& pixel : out_.hair.pixels)
@@ -271,6 +220,39 @@ public:
     }
 
 private:
+    struct Blended
+    {
+        HairSampleIds samples;
+        ImageId image;
+    };
+    Blended addBlended(RenderGraph& graph)
+    {
+        HairView view = view_;
+        view.frame = settings_.frameIndex;
+        const BufferId shaded = graph.importBuffer(buffers_.shaded);
+        const HairSampleIds samples = addHairStrandsPass(
+            graph, buffers_, shaded, view, settings_, std::uint32_t(lights_.size()), false, true);
+        return {samples,
+                addHairBlendPass(graph, buffers_, shaded, view, addHairCutsPass(graph, samples))};
+    }
+
+    ImageId addBackground(RenderGraph& graph, Image& radiance)
+    {
+        if (settings_.background) {
+            radiance.upload(*settings_.background);
+            return graph.importImage(radiance);
+        }
+        return addHairBackdropPass(graph, buffers_, view_, settings_, std::uint32_t(lights_.size()),
+                                   graph.importImage(radiance));
+    }
+
+    void keepTransmittance(const CpuImage& blended)
+    {
+        out_.exactTransmittance = CpuImage(blended.width, blended.height);
+        for (std::size_t i = 0; i < blended.pixels.size(); ++i)
+            out_.exactTransmittance.pixels[i].x = blended.pixels[i].w;
+    }
+
     void planShadows(const HairStrands& hair)
     {
         for (std::size_t i = 0; i < lights_.size(); ++i) {
@@ -290,6 +272,7 @@ private:
     HairBuffers buffers_;
     HairView view_;
     HairDepthScale depth_;
+    ImageDesc picture_;
 };
 
 } // namespace
@@ -322,7 +305,7 @@ HairFrame renderHair(Context& context, const HairStrands& hair, const Scene* opa
         maker.blendFrame();
     else
         maker.averageFrames();
-    countBlocks(frame);
+    countHairBlocks(frame);
     return frame;
 }
 

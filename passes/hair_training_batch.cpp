@@ -118,10 +118,9 @@ void fillHairCrop(HairBatch& batch, std::uint32_t slot, const HairTrainingFrame&
                       [&](float value) { return turned(kind, value, how); });
     float* exact = input + gpu::kHairInputExact * pixels;
     crop.read(first + gpu::kHairInputExact, exact, same);
-    for (const std::uint32_t plane : {gpu::kHairInputBlended, gpu::kHairInputDeep})
-        crop.read(first + plane, input + plane * pixels,
-                  [&](float value) { return turned(0, value, how); });
-    const float* blended = input + gpu::kHairInputBlended * pixels;
+    float* blended = input + gpu::kHairInputBlended * pixels;
+    crop.read(first + gpu::kHairInputBlended, blended,
+              [&](float value) { return turned(0, value, how); });
 
     float* image = batch.image.data() + slot * 4 * pixels;
     float* radiance = batch.truth.data() + slot * 4 * pixels;

@@ -26,7 +26,7 @@ struct HairBatch
 {
     std::uint32_t n = 0;
     std::uint32_t size = 0;
-    std::vector<float> input;  // [n,25,..] what the network reads
+    std::vector<float> input;  // [n,26,..] what the network reads
     std::vector<float> target; // [n,12,..] what it should say; 0 for the logits
     std::vector<float> image;  // [n,4,..] premultiplied radiance of the four samples' mean, 0
     std::vector<float> truth;  // [n,4,..] that of the supersampled frame, 0

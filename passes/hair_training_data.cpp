@@ -10,7 +10,7 @@
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/hair_head.hpp"
-#include "passes/hair_passes.hpp"
+#include "passes/hair_blend.hpp"
 #include "shaders/shared/rng.h"
 
 namespace strandlight {
@@ -154,12 +154,12 @@ private:
         Sum sum(context_, settings_.size);
         RenderGraph graph(context_);
         const HairSampleIds samples = strands(graph, view, true);
-        const ImageId exact = addHairCoveragePass(graph, buffers_, view);
         const TensorDesc desc = hairInputDesc(settings_.size, settings_.size);
         const HairDepthScale depth = hairDepthScale(hair_, camera_);
-        const ImageId blended = addHairBlendPass(
-            graph, buffers_, graph.importBuffer(buffers_.shaded), view, depth, exact);
-        const BufferId planes = addHairInputPass(graph, samples, exact, blended, depth,
+        const ImageId blended =
+            addHairBlendPass(graph, buffers_, graph.importBuffer(buffers_.shaded), view,
+                             addHairCutsPass(graph, samples));
+        const BufferId planes = addHairInputPass(graph, samples, blended, depth,
                                                  createTensor(graph, "hair network input", desc))
                                     .buffer;
         addHairResolvePass(graph, samples,

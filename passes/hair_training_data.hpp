@@ -20,7 +20,7 @@ struct HairTrainingSettings
     float strandShare = 1.0f;         // of the look's strands, in (0, 1]; for tests
 };
 
-// Planes of one repeat: 27 as kHairInputPlanes says, then the premultiplied radiance that is
+// Planes of one repeat: 26 as kHairInputPlanes says, then the premultiplied radiance that is
 // blended and that of the four samples' mean.
 inline constexpr std::uint32_t kHairBlendedPlane = gpu::kHairInputPlanes;
 inline constexpr std::uint32_t kHairMeanPlane = kHairBlendedPlane + 3;
@@ -38,7 +38,7 @@ struct HairTrainingFrame
     std::uint32_t size = 0;
     std::uint32_t repeats = 0;
     bool hasAverages = false;
-    std::vector<std::uint16_t> planes; // [repeats][33], target [5], averages [2][4]; [size, size]
+    std::vector<std::uint16_t> planes; // [repeats][32], target [5], averages [2][4]; [size, size]
 
     std::size_t planeCount() const;
     std::size_t repeatPlane(std::uint32_t repeat) const { return repeat * kHairRepeatPlanes; }

@@ -13,7 +13,7 @@ namespace strandlight {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x46544853u; // "SHTF"
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 struct Entry
 {

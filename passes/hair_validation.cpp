@@ -23,11 +23,10 @@ CpuImage composite(std::span<const float> y, std::span<const float> color, const
     CpuImage picture(batch.size, batch.size);
     for (std::size_t i = 0; i < pixels; ++i) {
         const float blended = batch.input[gpu::kHairInputBlended * pixels + i];
-        const float near = std::expm1(blended);
-        const float deep = std::expm1(batch.input[gpu::kHairInputDeep * pixels + i]);
+        const float before = std::expm1(blended);
         const float brightness =
-            std::clamp(std::expm1(blended + y[i]), gpu::kHairLeastBrightness * std::min(near, deep),
-                       gpu::kHairMostBrightness * std::max(near, deep));
+            std::clamp(std::expm1(blended + y[i]), gpu::kHairLeastBrightness * before,
+                       gpu::kHairMostBrightness * before);
         const float exact = batch.input[gpu::kHairInputExact * pixels + i];
         const float transmittance = std::clamp(exact + y[2 * pixels + i], 0.0f, 1.0f);
         const glm::vec3 c(color[i], color[pixels + i], color[2 * pixels + i]);

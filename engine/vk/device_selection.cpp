@@ -32,6 +32,9 @@ const FeatureRow kRequired[] = {
      [](DeviceFeatures& f) { return &f.core.features.fragmentStoresAndAtomics; }},
 };
 
+// Of one raster pass: the hair's slices of depth.
+constexpr std::uint32_t kColorTargets = 8;
+
 const char* typeName(VkPhysicalDeviceType type)
 {
     switch (type) {
@@ -116,6 +119,10 @@ DeviceInfo describeDevice(VkPhysicalDevice device)
     for (const FeatureRow& row : kRequired)
         if (!*row.get(has))
             info.refusals.push_back(std::string("lacks ") + row.name);
+    const std::uint32_t targets = properties.properties.limits.maxColorAttachments;
+    if (targets < kColorTargets)
+        info.refusals.push_back("draws into " + std::to_string(targets) + " images at once, " +
+                                std::to_string(kColorTargets) + " are needed");
     if (!hasExtension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
         info.refusals.push_back("lacks " VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
     return info;

@@ -21,24 +21,24 @@ struct Options
     bool byPass = false;
 };
 
-// Transmittance of a disc of hair that covers a share of the picture, as a head does.
+// A disc of black hair that covers a share of the picture, as a head does: transmittance in w.
 CpuImage disc(Size size, double share)
 {
-    CpuImage exact(size.width, size.height, glm::vec4(1.0f));
+    CpuImage blended(size.width, size.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
     const auto distance = [&](std::size_t i) {
         const double x = double(i % size.width) + 0.5 - 0.5 * size.width;
         const double y = double(i / size.width) + 0.5 - 0.5 * size.height;
         return std::hypot(x, y);
     };
-    std::vector<double> sorted(exact.pixels.size());
+    std::vector<double> sorted(blended.pixels.size());
     for (std::size_t i = 0; i < sorted.size(); ++i)
         sorted[i] = distance(i);
     std::sort(sorted.begin(), sorted.end());
     const auto covered = std::size_t(share * double(sorted.size()));
     for (std::size_t i = 0; covered > 0 && i < sorted.size(); ++i)
         if (distance(i) <= sorted[covered - 1])
-            exact.pixels[i].x = 0.4f;
-    return exact;
+            blended.pixels[i].w = 0.4f;
+    return blended;
 }
 
 struct Run
@@ -49,24 +49,22 @@ struct Run
 };
 
 // Samples are cleared, not drawn: the filter's time does not depend on what they hold.
-Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, const CpuImage& exact,
+Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, const CpuImage& hair,
               bool skipTiles, std::uint32_t runs)
 {
-    const ImageDesc desc{exact.width, exact.height, 1, Format::RGBA32F, 1};
+    const ImageDesc desc{hair.width, hair.height, 1, Format::RGBA32F, 1};
     ImageDesc four = desc.with(Format::RGBA16F);
     four.samples = 4;
-    Image transmittance(context, desc.with(Format::R32F), "exact");
     Image blended(context, desc, "blended"), filtered(context, desc, "filtered");
     Image radiance(context, desc, "radiance"), features(context, four, "features");
     Image shape(context, four, "shape");
-    transmittance.upload(exact);
+    blended.upload(hair);
     RenderGraph graph(context);
     graph.setTimings(true);
     HairFilterInput input;
     input.samples.features = graph.importImage(features);
     input.samples.shape = graph.importImage(shape);
     input.blended = graph.importImage(blended);
-    input.exact = graph.importImage(transmittance);
     const ParameterIds weights(graph, parameters);
     addHairFilterPasses(graph, net, weights, input,
                         {graph.importImage(filtered), graph.importImage(radiance)},
@@ -104,9 +102,9 @@ int run(const Options& o)
         const std::string name = "hair " + fixed(100.0 * share, 0) + " %";
         if (!report.wants(name))
             continue;
-        const CpuImage exact = disc(size, share);
-        const Run dense = runFilter(context, net, parameters, exact, false, runs);
-        const Run tiles = runFilter(context, net, parameters, exact, true, runs);
+        const CpuImage hair = disc(size, share);
+        const Run dense = runFilter(context, net, parameters, hair, false, runs);
+        const Run tiles = runFilter(context, net, parameters, hair, true, runs);
         if (std::memcmp(dense.radiance.pixels.data(), tiles.radiance.pixels.data(),
                         dense.radiance.pixels.size() * sizeof(glm::vec4)) != 0)
             throw Error(name + ": tiles give other bits than the whole picture");

@@ -1,27 +1,31 @@
-// Radiance of all strands, weighted by their alpha and by how far in front they are: a mean without noise, where the
-// samples have noise and no bias. In hair of one density the weight is what the hair before it lets through; of two
-// weights, one suits dense hair and one sparse hair.
-// McGuire, Bavoil. Weighted Blended Order-Independent Transparency. 2013
+// Every strand's radiance and what it absorbs, added up in slices of depth: within a slice the order of strands does not
+// count, and sums have no noise. The transmittance of a slice is exp(-sum), of all slices the exact product of 1 - alpha.
 #version 460
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "hair/strand_mask.glsl"
+#include "nn/nn_math.glsl"
+#include "shared/hair_coverage.h"
 
 layout(location = 0) noperspective in vec3 line;
-layout(location = 1) flat in vec4 first;
-layout(location = 2) flat in vec4 second;
-layout(location = 0) out vec4 near; // radiance times weight, weight: to be added
-layout(location = 1) out vec2 deep; // brightness and weight that fall more slowly
+layout(location = 1) noperspective in vec2 across;
+layout(location = 2) flat in vec4 first;
+layout(location = 3) flat in vec4 second;
+layout(binding = 4) uniform sampler2D firstCuts;  // depths in metres where slices end, rising
+layout(binding = 5) uniform sampler2D secondCuts;
+layout(location = 0) out vec4 slices[kHairSlices]; // radiance times absorbance, absorbance: to be added
 
 void main()
 {
-    float halfWidth = 0.5 * max(line.x, push.minimumWidth);
-    float covered = clamp(halfWidth + 0.5 - abs(line.y), 0.0, 1.0);
+    float alpha = push.alpha * hairStripArea(line.x, line.y, normalize(across));
+    float absorbance = nnLog1p(alpha / (1.0 - min(alpha, kHairMostAlpha))); // -ln(1 - alpha)
     vec4 here = mix(first, second, clamp(line.z, 0.0, 1.0));
-    float alpha = strandAlpha(line.x) * covered;
-    float depth = (here.w - push.blendDepth) * push.blendScale;
-    float weight = alpha * exp(-kHairBlendNear * depth);
-    near = vec4(here.rgb * weight, weight);
-    weight = alpha * exp(-kHairBlendDeep * depth);
-    deep = vec2(dot(here.rgb, vec3(0.2126, 0.7152, 0.0722)) * weight, weight);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 passed = step(texelFetch(firstCuts, pixel, 0), vec4(here.w)) + step(texelFetch(secondCuts, pixel, 0), vec4(here.w));
+    uint slice = uint(dot(passed, vec4(1.0)));
+    vec4 value = vec4(here.rgb * absorbance, absorbance);
+    [[unroll]] for (uint i = 0u; i < kHairSlices; ++i) {
+        slices[i] = i == slice ? value : vec4(0.0);
+    }
 }

@@ -7,8 +7,9 @@
 
 layout(binding = 3, rgba32f) uniform readonly imageBuffer shaded;
 layout(location = 0) noperspective out vec3 line; // true width, distance from the middle in pixels; 0 to 1 along
-layout(location = 1) flat out vec4 first;         // radiance, depth in metres of the end towards the root
-layout(location = 2) flat out vec4 second;
+layout(location = 1) noperspective out vec2 across; // the ribbon's normal in the picture
+layout(location = 2) flat out vec4 first;           // radiance, depth in metres of the end towards the root
+layout(location = 3) flat out vec4 second;
 
 void main()
 {
@@ -18,5 +19,6 @@ void main()
     first = vec4(imageLoad(shaded, root).rgb, dot(rows[3], vec4(imageLoad(points, root).xyz, 1.0)));
     second = vec4(imageLoad(shaded, root + 1).rgb, dot(rows[3], vec4(imageLoad(points, root + 1).xyz, 1.0)));
     line = vec3(vertex.line, float(vertex.point - root));
+    across = vec2(-vertex.tangent.y, vertex.tangent.x);
     gl_Position = vertex.clip;
 }

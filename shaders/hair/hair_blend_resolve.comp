@@ -1,15 +1,33 @@
-// The blended sums as premultiplied radiance: their means, as far as the exact transmittance lets hair show.
+// The slices over each other, the nearest first: premultiplied radiance, and the transmittance of all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "nn/nn_math.glsl"
 #include "shared/hair_types.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2D near;  // radiance times weight, weight
-layout(binding = 1) uniform sampler2D deep;  // brightness times weight, weight
-layout(binding = 2) uniform sampler2D exact; // transmittance
-layout(binding = 3, rgba32f) uniform writeonly image2D blended; // premultiplied radiance, deep brightness
+layout(binding = 0) uniform sampler2D slice0; // radiance times absorbance, absorbance
+layout(binding = 1) uniform sampler2D slice1;
+layout(binding = 2) uniform sampler2D slice2;
+layout(binding = 3) uniform sampler2D slice3;
+layout(binding = 4) uniform sampler2D slice4;
+layout(binding = 5) uniform sampler2D slice5;
+layout(binding = 6) uniform sampler2D slice6;
+layout(binding = 7) uniform sampler2D slice7;
+layout(binding = 8, rgba32f) uniform writeonly image2D blended; // premultiplied radiance, transmittance
 layout(push_constant, scalar) uniform Push { HairResolvePush push; };
+
+const float kMost = 65504.0; // what a sum of halves may pass
+
+vec4 under(vec4 nearer, vec4 slice)
+{
+    if (slice.a == 0.0) {
+        return nearer;
+    }
+    slice = mix(slice, vec4(kMost), greaterThan(slice, vec4(kMost))); // NaN stays
+    float through = nnExp(-slice.a);
+    return vec4(nearer.rgb + slice.rgb / slice.a * (nearer.a * (1.0 - through)), nearer.a * through);
+}
 
 void main()
 {
@@ -17,8 +35,14 @@ void main()
     if (pixel.x >= int(push.width) || pixel.y >= int(push.height)) {
         return;
     }
-    vec4 front = texelFetch(near, pixel, 0);
-    vec2 all = texelFetch(deep, pixel, 0).xy;
-    vec4 mean = vec4(front.a > 0.0 ? front.rgb / front.a : vec3(0.0), all.y > 0.0 ? all.x / all.y : 0.0);
-    imageStore(blended, pixel, mean * (1.0 - texelFetch(exact, pixel, 0).x));
+    vec4 sum = vec4(0.0, 0.0, 0.0, 1.0);
+    sum = under(sum, texelFetch(slice0, pixel, 0));
+    sum = under(sum, texelFetch(slice1, pixel, 0));
+    sum = under(sum, texelFetch(slice2, pixel, 0));
+    sum = under(sum, texelFetch(slice3, pixel, 0));
+    sum = under(sum, texelFetch(slice4, pixel, 0));
+    sum = under(sum, texelFetch(slice5, pixel, 0));
+    sum = under(sum, texelFetch(slice6, pixel, 0));
+    sum = under(sum, texelFetch(slice7, pixel, 0));
+    imageStore(blended, pixel, sum);
 }

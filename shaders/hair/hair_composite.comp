@@ -1,4 +1,4 @@
-// The network's answer over the background. It corrects the blended brightness and the exact transmittance; the colour is
+// The network's answer over the background. It corrects the blended brightness and transmittance; the colour is
 // that of the blended radiance around, weighted by the kernel it predicts. Pixels that no strand touches stay as they are.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
@@ -12,11 +12,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint TILES = 0; // 1: over a list of tiles
 
 layout(binding = 0, r32f) uniform readonly imageBuffer y;          // [12,H,W]
-layout(binding = 1, rgba32f) uniform readonly image2D blended;     // premultiplied radiance
-layout(binding = 2) uniform sampler2D exact;                       // transmittance
-layout(binding = 3, rgba32f) uniform writeonly image2D filtered;   // premultiplied radiance, 1 - transmittance
-layout(binding = 4, rgba32f) uniform image2D radiance;             // background, then hair over it
-layout(binding = 5, r32ui) uniform readonly uimageBuffer tiles;
+layout(binding = 1, rgba32f) uniform readonly image2D blended;     // premultiplied radiance, transmittance
+layout(binding = 2, rgba32f) uniform writeonly image2D filtered;   // premultiplied radiance, 1 - transmittance
+layout(binding = 3, rgba32f) uniform image2D radiance;             // background, then hair over it
+layout(binding = 4, r32ui) uniform readonly uimageBuffer tiles;
 layout(push_constant, scalar) uniform Push { HairCompositePush push; };
 
 float luminance(vec3 c)
@@ -31,19 +30,18 @@ void main()
     if (pixel.x >= int(push.width) || pixel.y < int(push.firstRow) || pixel.y >= int(push.endRow)) {
         return;
     }
-    float exactHere = texelFetch(exact, pixel, 0).x;
-    if (exactHere == 1.0) {
+    vec4 mean = imageLoad(blended, pixel);
+    if (mean.a == 1.0) {
         return;
     }
     int plane = int(push.y.width * push.y.height);
     int at = int(push.y.offset) + inTensor.y * int(push.y.width) + inTensor.x;
-    vec4 mean = imageLoad(blended, pixel);
-    float near = luminance(mean.rgb);
-    float brightness = nnExp(nnLog1p(near) + imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
-    // What shows is some mean of the strands: not far from both of the blended ones.
-    float low = kHairLeastBrightness * min(near, mean.a), high = kHairMostBrightness * max(near, mean.a);
+    float before = luminance(mean.rgb);
+    float brightness = nnExp(nnLog1p(before) + imageLoad(y, at + int(kHairOutBrightness) * plane).x) - 1.0;
+    // The network is never asked for more: a wrong answer must not be seen from afar.
+    float low = kHairLeastBrightness * before, high = kHairMostBrightness * before;
     brightness = keepNan(brightness, clamp(brightness, low, high));
-    float transmittance = exactHere + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;
+    float transmittance = mean.a + imageLoad(y, at + int(kHairOutTransmittance) * plane).x;
     transmittance = keepNan(transmittance, clamp(transmittance, 0.0, 1.0));
 
     float weight[kFilterTaps];

@@ -14,10 +14,9 @@ layout(constant_id = 0) const uint TILES = 0; // 1: over a list of tiles
 
 layout(binding = 0) uniform sampler2DMS features; // brightness, illumination, transparency, depth
 layout(binding = 1) uniform sampler2DMS shape;    // tangent
-layout(binding = 2) uniform sampler2D exact;      // transmittance
-layout(binding = 3, scalar) writeonly buffer Planes { RESULT_ELEMENT planes[]; };
-layout(binding = 4, r32ui) uniform readonly uimageBuffer tiles;
-layout(binding = 5, rgba32f) uniform readonly image2D blended; // premultiplied radiance, deep brightness
+layout(binding = 2, scalar) writeonly buffer Planes { RESULT_ELEMENT planes[]; };
+layout(binding = 3, r32ui) uniform readonly uimageBuffer tiles;
+layout(binding = 4, rgba32f) uniform readonly image2D blended; // premultiplied radiance, transmittance
 layout(push_constant, scalar) uniform Push { HairInputPush push; };
 
 void main()
@@ -43,8 +42,7 @@ void main()
         planes[first + 16u * plane] = RESULT_ELEMENT(along.x * along.x - along.y * along.y);
         planes[first + 20u * plane] = RESULT_ELEMENT(2.0 * along.x * along.y);
     }
-    planes[at + kHairInputExact * plane] = RESULT_ELEMENT(inside ? texelFetch(exact, from, 0).x : 1.0);
-    vec4 mean = inside ? imageLoad(blended, from) : vec4(0.0);
+    vec4 mean = inside ? imageLoad(blended, from) : vec4(0.0, 0.0, 0.0, 1.0);
+    planes[at + kHairInputExact * plane] = RESULT_ELEMENT(mean.a);
     planes[at + kHairInputBlended * plane] = RESULT_ELEMENT(nnLog1p(dot(mean.rgb, vec3(0.2126, 0.7152, 0.0722))));
-    planes[at + kHairInputDeep * plane] = RESULT_ELEMENT(nnLog1p(mean.a));
 }

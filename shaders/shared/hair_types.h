@@ -28,17 +28,15 @@ struct HairStrandPush
     float pixelsPerUnit; // of a length of 1 m at clip w = 1
     float widthScale;    // drawn strands stand for this many
     float minimumWidth;  // pixels: 1 where alpha makes up for the width, 0 for true width
-    float border;        // pixels by which ribbons grow beyond their width
+    float border;        // pixels by which ribbons grow beyond their width: kHairPixelReach for exact areas
     float alpha;         // of a strand that covers its pixel
     uint frame;          // of the sample masks
-    float blendDepth;    // metres: where the blended radiance has weight 1
-    float blendScale;    // per metre: over the depth of the hair's bounding sphere
 };
 
-// By which exponents the blended radiance's weights fall over that depth.
-STRANDLIGHT_CONST(float) kHairBlendNear = 32.0f;
-STRANDLIGHT_CONST(float) kHairBlendDeep = 6.0f;
-
+// Slices of depth that strands are blended in; a fragment writes all of them.
+STRANDLIGHT_CONST(uint) kHairSlices = 8u;
+// Of a blended strand: its logarithm must stay finite.
+STRANDLIGHT_CONST(float) kHairMostAlpha = 0.999999f;
 
 struct HairOpaquePush
 {
@@ -129,13 +127,12 @@ struct HairResolvePush
     uint samples; // that are averaged, of four
 };
 
-// Planes of the network's input, [27, height, width]: value v of sample s is plane 4 v + s; then the exact transmittance
-// and ln(1 + brightness) of the blended radiance, near and deep. Values: ln(1 + brightness), illumination, transparency, depth, tangent
+// Planes of the network's input, [26, height, width]: value v of sample s is plane 4 v + s; then the exact transmittance
+// and ln(1 + brightness) of the blended radiance. Values: ln(1 + brightness), illumination, transparency, depth, tangent
 // as cos and sin of its double angle.
-STRANDLIGHT_CONST(uint) kHairInputPlanes = 27u;
+STRANDLIGHT_CONST(uint) kHairInputPlanes = 26u;
 STRANDLIGHT_CONST(uint) kHairInputExact = 24u;
 STRANDLIGHT_CONST(uint) kHairInputBlended = 25u;
-STRANDLIGHT_CONST(uint) kHairInputDeep = 26u;
 
 struct HairInputPush
 {
@@ -160,8 +157,8 @@ struct HairTouchedPush
 STRANDLIGHT_CONST(uint) kHairOutputs = 12u;
 STRANDLIGHT_CONST(uint) kHairOutBrightness = 0u;
 STRANDLIGHT_CONST(uint) kHairOutTransmittance = 2u;
-// The filtered brightness stays within these, times the lesser and the greater of the blended ones.
-STRANDLIGHT_CONST(float) kHairLeastBrightness = 0.25f;
+// The filtered brightness stays within these, times the blended one.
+STRANDLIGHT_CONST(float) kHairLeastBrightness = 0.5f;
 STRANDLIGHT_CONST(float) kHairMostBrightness = 2.0f;
 STRANDLIGHT_CONST(uint) kHairOutLogits = 3u;
 

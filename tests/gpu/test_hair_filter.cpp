@@ -9,6 +9,7 @@
 #include "compute_nn/reference/kernel_filter.hpp"
 #include "compute_nn/reference/networks.hpp"
 #include "engine/base/error.hpp"
+#include "passes/hair_blend.hpp"
 #include "passes/hair_filter.hpp"
 #include "passes/hair_network.hpp"
 #include "tests/gpu/hair_cases.hpp"
@@ -41,7 +42,7 @@ HairNetwork someNetwork(const UNetDesc& net)
 
 struct Filtered
 {
-    CpuImage blended, exact, filtered, radiance;
+    CpuImage blended, filtered, radiance;
     std::vector<float> planes; // whole picture, dense
 };
 
@@ -70,9 +71,9 @@ Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
     const BufferId shaded = addHairShadingPasses(graph, buffers, lights, {false}, view, render);
     HairFilterInput input;
     input.samples = addHairStrandsPass(graph, buffers, shaded, view, render, 1, false, true);
-    input.exact = addHairCoveragePass(graph, buffers, view);
     input.depth = hairDepthScale(hair, camera);
-    input.blended = addHairBlendPass(graph, buffers, shaded, view, input.depth, input.exact);
+    input.blended =
+        addHairBlendPass(graph, buffers, shaded, view, addHairCutsPass(graph, input.samples));
     const ParameterIds weights(graph, network.parameters);
     const HairComposite over{graph.importImage(filtered), graph.importImage(radiance)};
     std::optional<HalfGuard> guard;
@@ -83,17 +84,16 @@ Filtered filter(HairNetwork& network, const HairFilterSettings& settings,
     if (guard)
         guard->output(graph);
     const TensorId planes =
-        addHairInputPass(graph, input.samples, input.exact, input.blended, input.depth,
+        addHairInputPass(graph, input.samples, input.blended, input.depth,
                          createTensor(graph, "planes", hairInputDesc(width, height)));
-    graph.output(input.exact);
     graph.output(input.blended);
     graph.output(planes.buffer);
     graph.run();
     if (guard)
         guard->check(graph);
     CHECK_EQ(context().validationMessages(), 0);
-    return {graph.read(input.blended), graph.read(input.exact), filtered.download(),
-            radiance.download(), graph.read<float>(planes.buffer)};
+    return {graph.read(input.blended), filtered.download(), radiance.download(),
+            graph.read<float>(planes.buffer)};
 }
 
 bool sameBytes(const CpuImage& a, const CpuImage& b)
@@ -133,12 +133,10 @@ glm::dvec4 expectedHair(const Filtered& f, const TensorDesc& desc, const std::ve
     const double near = glm::dot(glm::dvec3(mean), glm::dvec3(0.2126, 0.7152, 0.0722));
     const double brightness =
         std::clamp(std::expm1(std::log1p(near) + out(gpu::kHairOutBrightness)),
-                   gpu::kHairLeastBrightness * std::min(near, mean.w),
-                   gpu::kHairMostBrightness * std::max(near, mean.w));
+                   gpu::kHairLeastBrightness * near, gpu::kHairMostBrightness * near);
     const double size = glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
     const glm::dvec3 hair = size > 0.0 ? color * (brightness / size) : glm::dvec3(brightness);
-    const double transmittance =
-        std::clamp(f.exact.at(px, py).x + out(gpu::kHairOutTransmittance), 0.0, 1.0);
+    const double transmittance = std::clamp(mean.w + out(gpu::kHairOutTransmittance), 0.0, 1.0);
     return {hair, 1.0 - transmittance};
 }
 
@@ -160,7 +158,7 @@ TEST_CASE("hair filter: the picture is what planes, network and kernel give in d
     double worst = 0.0;
     for (std::uint32_t py = 0; py < kHeight; ++py)
         for (std::uint32_t px = 0; px < kWidth; ++px) {
-            if (f.exact.at(px, py).x == 1.0f) {
+            if (f.blended.at(px, py).w == 1.0f) {
                 REQUIRE(f.radiance.at(px, py) == background.at(px, py));
                 REQUIRE(f.filtered.at(px, py) == glm::vec4(0.0f));
                 continue;

@@ -1,4 +1,4 @@
-// The 27 planes that a network reads: each value where it should be, and in step with the plain
+// The 26 planes that a network reads: each value where it should be, and in step with the plain
 // average of the same samples.
 #include <cmath>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/error.hpp"
-#include "passes/hair_passes.hpp"
+#include "passes/hair_blend.hpp"
 #include "shaders/shared/hair_masks.h"
 #include "tests/support/gpu_fixture.hpp"
 
@@ -41,7 +41,7 @@ HairStrands diagonal()
 
 struct Input
 {
-    std::vector<float> planes; // [27, kPadded, kPadded]
+    std::vector<float> planes; // [26, kPadded, kPadded]
     std::vector<glm::vec4> shaded;
     CpuImage average;
 
@@ -72,12 +72,11 @@ Input networkInput(float alpha)
     const BufferId shaded = addHairShadingPasses(graph, buffers, lights, {false}, view, settings);
     const HairSampleIds samples =
         addHairStrandsPass(graph, buffers, shaded, view, settings, 1, true, true);
-    const ImageId exact = addHairCoveragePass(graph, buffers, view);
     const HairDepthScale depth{kDistance - 50.0f, 0.01f};
-    const ImageId blended = addHairBlendPass(graph, buffers, shaded, view, depth, exact);
-    const TensorId planes =
-        addHairInputPass(graph, samples, exact, blended, depth,
-                         createTensor(graph, "planes", hairInputDesc(kSide, kSide)));
+    const ImageId blended =
+        addHairBlendPass(graph, buffers, shaded, view, addHairCutsPass(graph, samples));
+    const TensorId planes = addHairInputPass(
+        graph, samples, blended, depth, createTensor(graph, "planes", hairInputDesc(kSide, kSide)));
     Image hairSum(context, {kSide, kSide, 1, Format::RGBA32F, 1}, "hair sum");
     Image behind(context, {kSide, kSide, 1, Format::RGBA32F, 1}, "behind sum");
     addHairResolvePass(graph, samples, {graph.importImage(hairSum), graph.importImage(behind)},
@@ -116,13 +115,11 @@ TEST_CASE("hair network input: values of a ribbon and of nothing")
             CHECK(input.at(6, 0, empty.x, empty.y) == 1.0f);
         }
     }
-    CHECK(input.at(6, 0, 16, 16) == 0.0f);
-    // Of a single strand, both blended means are its own light; nothing is rounded to halves.
-    for (const std::uint32_t plane : {1u, 2u}) {
-        CHECK(input.at(6, plane, 16, 16) == doctest::Approx(std::log1p(brightness)).epsilon(2e-3));
-        CHECK(input.at(6, plane, 1, 1) == 0.0f);
-        CHECK(input.at(6, plane, 4, 31) == 0.0f);
-    }
+    // An opaque strand is blended as one of kHairMostAlpha; sums are halves.
+    CHECK(input.at(6, 0, 16, 16) < 2e-6f);
+    CHECK(input.at(6, 1, 16, 16) == doctest::Approx(std::log1p(brightness)).epsilon(2e-3));
+    CHECK(input.at(6, 1, 1, 1) == 0.0f);
+    CHECK(input.at(6, 1, 4, 31) == 0.0f);
 }
 
 TEST_CASE("hair network input: the samples are those of the average")
@@ -166,5 +163,5 @@ TEST_CASE("hair network input: strands without features are refused")
     RenderGraph graph(test::context());
     const ImageId any = graph.createImage("any", {4, 4, 1, Format::R32F, 1});
     const TensorId planes = createTensor(graph, "planes", hairInputDesc(4, 4));
-    CHECK_THROWS_AS((void)addHairInputPass(graph, HairSampleIds{}, any, any, {}, planes), Error);
+    CHECK_THROWS_AS((void)addHairInputPass(graph, HairSampleIds{}, any, {}, planes), Error);
 }

@@ -2,12 +2,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shared/hair_types.h"
 
-layout(location = 0) out vec4 near;
-layout(location = 1) out vec2 deep;
+layout(location = 0) out vec4 slices[kHairSlices];
 
 void main()
 {
-    near = vec4(0.0);
-    deep = vec2(0.0);
+    for (uint i = 0u; i < kHairSlices; ++i) {
+        slices[i] = vec4(0.0);
+    }
 }
