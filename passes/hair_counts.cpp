@@ -4,6 +4,18 @@
 
 namespace strandlight {
 
+void addHairTimings(std::vector<PassTiming>& sum, std::span<const PassTiming> more)
+{
+    for (const PassTiming& timing : more) {
+        const auto same = std::find_if(sum.begin(), sum.end(),
+                                       [&](const PassTiming& t) { return t.pass == timing.pass; });
+        if (same == sum.end())
+            sum.push_back(timing);
+        else
+            same->milliseconds += timing.milliseconds;
+    }
+}
+
 void countHairBlocks(HairFrame& frame)
 {
     constexpr std::uint32_t kSide = 8;

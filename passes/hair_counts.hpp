@@ -1,4 +1,5 @@
-// What a hair frame did without: blocks that no strand touches, tiles that the network left out.
+// What a hair frame took, and what it did without: milliseconds by pass, blocks that no strand
+// touches, tiles that the network left out.
 #pragma once
 
 #include <span>
@@ -8,6 +9,9 @@
 #include "passes/hair_render.hpp"
 
 namespace strandlight {
+
+// Milliseconds of the same pass are added up.
+void addHairTimings(std::vector<PassTiming>& sum, std::span<const PassTiming> more);
 
 // Fills blocks and emptyBlocks from exactTransmittance.
 void countHairBlocks(HairFrame& frame);

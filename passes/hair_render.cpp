@@ -44,18 +44,6 @@ void checkSettings(const HairRenderSettings& s)
                     std::to_string(s.width) + "x" + std::to_string(s.height));
 }
 
-void addTimings(std::vector<PassTiming>& sum, const std::vector<PassTiming>& more)
-{
-    for (const PassTiming& timing : more) {
-        const auto same = std::find_if(sum.begin(), sum.end(),
-                                       [&](const PassTiming& t) { return t.pass == timing.pass; });
-        if (same == sum.end())
-            sum.push_back(timing);
-        else
-            same->milliseconds += timing.milliseconds;
-    }
-}
-
 CpuImage backgroundPicture(const HairRenderSettings& settings)
 {
     if (settings.background)
@@ -137,7 +125,7 @@ public:
             graph.run();
             out_.exactTransmittance = graph.read(exact);
         }
-        addTimings(out_.timings, graph.timings());
+        addHairTimings(out_.timings, graph.timings());
     }
 
     void averageFrames()
@@ -159,7 +147,7 @@ public:
                                1.0f / float(settings_.frames),
                                settings_.filter == HairFilter::None ? 1u : 4u);
             graph.run();
-            addTimings(out_.timings, graph.timings());
+            addHairTimings(out_.timings, graph.timings());
         }
         out_.hair = hair.download();
         composite(out_, behind.download(), settings_);
@@ -175,7 +163,7 @@ public:
         addBackground(graph, radiance);
         graph.output(blended);
         graph.run();
-        addTimings(out_.timings, graph.timings());
+        addHairTimings(out_.timings, graph.timings());
         out_.hair = graph.read(blended);
         out_.radiance = radiance.download();
         keepTransmittance(out_.hair);
@@ -210,7 +198,7 @@ public:
         graph.run();
         if (guard)
             guard->check(graph);
-        addTimings(out_.timings, graph.timings());
+        addHairTimings(out_.timings, graph.timings());
         out_.tiles = countHairTiles(graph, done.tiles);
         keepTransmittance(graph.read(blended.image));
         out_.radiance = radiance.download();
