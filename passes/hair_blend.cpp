@@ -10,7 +10,8 @@
 namespace strandlight {
 namespace {
 
-using Slices = std::array<ImageId, gpu::kHairSlices>;
+// One more for the quarters of the pixels.
+using Slices = std::array<ImageId, gpu::kHairSlices + 1>;
 
 // RGBA16F: half the memory, and no difference in error that could be measured.
 Slices addSlicesPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
@@ -33,7 +34,7 @@ Slices addSlicesPass(RenderGraph& graph, HairBuffers& buffers, BufferId shaded,
                             .fragment = &kernels::hair_blend_frag,
                             .depthWrite = false,
                             .blend = Blend::Add};
-    pass.draw(raster, buffers.segmentCount * 6, 1, strandAreaPush(buffers, view),
+    pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
               {strands.points, strands.tangents, strands.segments, shaded,
                Binding(cuts.first, Filter::Nearest), Binding(cuts.second, Filter::Nearest)});
     return slices;
@@ -51,7 +52,7 @@ HairCuts addHairCutsPass(RenderGraph& graph, const HairSampleIds& samples)
     pass.sample(samples.features);
     HairCuts cuts;
     cuts.first = pass.write(graph.createImage("hair cuts 0 to 3", desc));
-    cuts.second = pass.write(graph.createImage("hair cuts 4 to 6", desc));
+    cuts.second = pass.write(graph.createImage("hair cuts 4 and 5", desc));
     pass.dispatch(kernels::hair_cuts, extent, gpu::HairResolvePush{extent.x, extent.y, 1.0f, 4},
                   {Binding(samples.features, Filter::Nearest), cuts.first, cuts.second});
     return cuts;

@@ -1,7 +1,6 @@
 #include "passes/hair_draw.hpp"
 
 #include "kernels/hair.gen.hpp"
-#include "shaders/shared/hair_coverage.h"
 
 namespace strandlight {
 
@@ -19,14 +18,6 @@ gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view)
     push.minimumWidth = view.trueWidth ? 0.0f : 1.0f;
     push.alpha = view.alpha;
     push.frame = view.frame;
-    return push;
-}
-
-gpu::HairStrandPush strandAreaPush(const HairBuffers& buffers, const HairView& view)
-{
-    gpu::HairStrandPush push = strandPush(buffers, view);
-    push.minimumWidth = 0.0f;
-    push.border = gpu::kHairPixelReach;
     return push;
 }
 

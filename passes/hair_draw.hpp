@@ -9,8 +9,6 @@
 namespace strandlight {
 
 gpu::HairStrandPush strandPush(const HairBuffers& buffers, const HairView& view);
-// Ribbons of true width that meet the middle of every pixel they touch: for exact areas.
-gpu::HairStrandPush strandAreaPush(const HairBuffers& buffers, const HairView& view);
 gpu::HairOpaquePush opaquePush(const HairView& view);
 
 void drawOpaque(RenderGraph& graph, PassBuilder& pass, HairBuffers& buffers,

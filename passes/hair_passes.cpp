@@ -9,7 +9,7 @@
 namespace strandlight {
 namespace {
 
-static_assert(sizeof(gpu::HairStrandPush) == 104 && sizeof(gpu::HairOpaquePush) == 100 &&
+static_assert(sizeof(gpu::HairStrandPush) == 100 && sizeof(gpu::HairOpaquePush) == 100 &&
               sizeof(gpu::HairShadePush) == 56 && sizeof(gpu::HairLight) == 120 &&
               sizeof(gpu::HairInputPush) == 36);
 
@@ -150,11 +150,11 @@ ImageId addHairCoveragePass(RenderGraph& graph, HairBuffers& buffers, const Hair
     drawOpaque(graph, pass, buffers, opaquePush(view), kernels::hair_unhidden_frag,
                Blend::Multiply);
     const StrandIds strands = readStrands(graph, pass, buffers);
-    const RasterDesc raster{.vertex = &kernels::hair_silhouette_vert,
+    const RasterDesc raster{.vertex = &kernels::hair_coverage_vert,
                             .fragment = &kernels::hair_coverage_frag,
                             .depthWrite = false,
                             .blend = Blend::Multiply};
-    pass.draw(raster, buffers.segmentCount * 6, 1, strandAreaPush(buffers, view),
+    pass.draw(raster, buffers.segmentCount * 6, 1, strandPush(buffers, view),
               {strands.points, strands.tangents, strands.segments});
     return product;
 }

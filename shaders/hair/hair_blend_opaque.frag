@@ -5,9 +5,11 @@
 #include "shared/hair_types.h"
 
 layout(location = 0) out vec4 slices[kHairSlices];
+layout(location = 7) out vec4 quarters;
 
 void main()
 {
+    quarters = vec4(0.0);
     for (uint i = 0u; i < kHairSlices; ++i) {
         slices[i] = vec4(0.0);
     }

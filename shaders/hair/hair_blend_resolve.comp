@@ -1,4 +1,5 @@
-// The slices over each other, the nearest first: premultiplied radiance, and the transmittance of all.
+// The slices over each other, the nearest first: premultiplied radiance, as far as the quarters of the pixel hide what is
+// behind, and the transmittance of the quarters' mean.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -13,7 +14,7 @@ layout(binding = 3) uniform sampler2D slice3;
 layout(binding = 4) uniform sampler2D slice4;
 layout(binding = 5) uniform sampler2D slice5;
 layout(binding = 6) uniform sampler2D slice6;
-layout(binding = 7) uniform sampler2D slice7;
+layout(binding = 7) uniform sampler2D quarters; // absorbance
 layout(binding = 8, rgba32f) uniform writeonly image2D blended; // premultiplied radiance, transmittance
 layout(push_constant, scalar) uniform Push { HairResolvePush push; };
 
@@ -43,6 +44,8 @@ void main()
     sum = under(sum, texelFetch(slice4, pixel, 0));
     sum = under(sum, texelFetch(slice5, pixel, 0));
     sum = under(sum, texelFetch(slice6, pixel, 0));
-    sum = under(sum, texelFetch(slice7, pixel, 0));
-    imageStore(blended, pixel, sum);
+    vec4 absorbed = texelFetch(quarters, pixel, 0);
+    float through = 0.25 * (nnExp(-absorbed.x) + nnExp(-absorbed.y) + nnExp(-absorbed.z) + nnExp(-absorbed.w));
+    float scattered = 1.0 - sum.a; // what strands all over the pixel would hide
+    imageStore(blended, pixel, scattered > 0.0 ? vec4(sum.rgb * ((1.0 - through) / scattered), through) : sum);
 }

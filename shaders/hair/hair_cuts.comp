@@ -11,7 +11,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2DMS features; // brightness, illumination, transparency, depth in metres
 layout(binding = 1, rgba32f) uniform writeonly image2D first;
-layout(binding = 2, rgba32f) uniform writeonly image2D second; // .w is never cut
+layout(binding = 2, rgba32f) uniform writeonly image2D second; // .zw are never cut
 layout(push_constant, scalar) uniform Push { HairResolvePush push; };
 
 const ivec2 kTaps[5] = ivec2[5](ivec2(0, 0), ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
@@ -50,5 +50,5 @@ void main()
         }
     }
     imageStore(first, pixel, vec4(cut[0], cut[1], cut[2], cut[3]));
-    imageStore(second, pixel, vec4(cut[4], cut[5], cut[6], kFar));
+    imageStore(second, pixel, vec4(cut[4], cut[5], kFar, kFar));
 }

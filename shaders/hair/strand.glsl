@@ -4,12 +4,7 @@
 #ifndef STRANDLIGHT_HAIR_STRAND_GLSL
 #define STRANDLIGHT_HAIR_STRAND_GLSL
 
-#include "shared/hair_types.h"
-
-layout(binding = 0, rgba32f) uniform readonly imageBuffer points;
-layout(binding = 1, rgba32f) uniform readonly imageBuffer tangents;
-layout(binding = 2, rg32ui) uniform readonly uimageBuffer segments;
-layout(push_constant, scalar) uniform Push { HairStrandPush push; };
+#include "hair/points.glsl"
 
 struct RibbonVertex
 {
@@ -28,17 +23,12 @@ RibbonVertex ribbonVertex(uint vertex)
     RibbonVertex result;
     result.ids = segment.yx;
     result.point = int(segment.x + (corner >> 1u));
-    vec4 pointRadius = imageLoad(points, result.point);
-    vec4 clip = push.viewProjection * vec4(pointRadius.xyz, 1.0);
-    // Derivative of the projected position along the tangent, times w squared, in pixels.
-    vec4 along = push.viewProjection * vec4(imageLoad(tangents, result.point).xyz, 0.0);
-    vec2 direction = (along.xy * clip.w - clip.xy * along.w) * push.size;
-    float size = length(direction);
-    result.tangent = size > 1e-20 ? direction / size : vec2(1.0, 0.0);
+    vec4 clip = clipOf(result.point);
+    result.tangent = pictureTangent(result.point, clip);
     float w = max(clip.w, 1e-6);
-    float width = 2.0 * pointRadius.w * push.widthScale * push.pixelsPerUnit / w;
+    float width = pixelWidth(result.point, w);
     float side = (corner & 1u) == 0u ? -1.0 : 1.0;
-    float offset = side * 0.5 * (max(width, push.minimumWidth) + push.border);
+    float offset = side * 0.5 * max(width, push.minimumWidth);
     result.line = vec2(width, offset);
     vec2 pixels = vec2(-result.tangent.y, result.tangent.x) * offset + push.jitter;
     result.clip = clip + vec4(pixels * 2.0 / push.size * w, 0.0, 0.0);

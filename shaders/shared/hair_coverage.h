@@ -39,6 +39,27 @@ STRANDLIGHT_FN float hairStripArea(float width, float distance, vec2 across)
     return clamp(before - hairAreaBeyond(far, n), 0.0f, 1.0f);
 }
 
+// Of the unit square around 0, the part in a rectangle of `width` across and `size` along the unit vector `direction`, whose
+// middle is at the signed distances `across` and `along`: the product of both strips, exact where the rectangle is level or
+// one strip holds the whole square. Rectangles end to end add up to a longer one.
+STRANDLIGHT_FN float hairRectangleArea(float width, float across, float size, float along, vec2 direction)
+{
+    return hairStripArea(width, across, vec2(-direction.y, direction.x)) * hairStripArea(size, along, direction);
+}
+
+// The same in each quarter of the unit square, as a share of the quarter: -x -y, +x -y, -x +y, +x +y (y down). Their mean is
+// the area in the square.
+STRANDLIGHT_FN vec4 hairQuarterAreas(float width, float across, float size, float along, vec2 direction)
+{
+    vec4 areas;
+    for (int i = 0; i < 4; ++i) {
+        vec2 middle = vec2((i & 1) == 0 ? -0.25f : 0.25f, i < 2 ? -0.25f : 0.25f);
+        float a = across - dot(middle, vec2(-direction.y, direction.x)), b = along - dot(middle, direction);
+        areas[i] = hairRectangleArea(2.0f * width, 2.0f * a, 2.0f * size, 2.0f * b, direction);
+    }
+    return areas;
+}
+
 STRANDLIGHT_SHARED_END
 
 #endif

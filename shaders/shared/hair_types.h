@@ -28,13 +28,13 @@ struct HairStrandPush
     float pixelsPerUnit; // of a length of 1 m at clip w = 1
     float widthScale;    // drawn strands stand for this many
     float minimumWidth;  // pixels: 1 where alpha makes up for the width, 0 for true width
-    float border;        // pixels by which ribbons grow beyond their width: kHairPixelReach for exact areas
     float alpha;         // of a strand that covers its pixel
     uint frame;          // of the sample masks
 };
 
-// Slices of depth that strands are blended in; a fragment writes all of them.
-STRANDLIGHT_CONST(uint) kHairSlices = 8u;
+// Slices of depth that strands are blended in; a fragment writes all of them and one image more, which makes the eight that
+// every device draws into at once.
+STRANDLIGHT_CONST(uint) kHairSlices = 7u;
 // Of a blended strand: its logarithm must stay finite.
 STRANDLIGHT_CONST(float) kHairMostAlpha = 0.999999f;
 

@@ -100,7 +100,7 @@ const Blended& blended()
     return once;
 }
 
-std::array<double, gpu::kHairSlices> cutsAt(const Blended& b, std::uint32_t x, std::uint32_t y)
+std::array<double, 8> cutsAt(const Blended& b, std::uint32_t x, std::uint32_t y)
 {
     const glm::vec4 a = b.first.at(x, y), c = b.second.at(x, y);
     return {a.x, a.y, a.z, a.w, c.x, c.y, c.z, c.w};
@@ -110,6 +110,7 @@ struct Fragment
 {
     double alpha, depth;
     glm::dvec3 radiance;
+    glm::dvec4 quarters; // alpha in each of the pixel's
 };
 
 std::vector<Fragment> fragmentsAt(const Blended& b, std::uint32_t x, std::uint32_t y)
@@ -118,34 +119,47 @@ std::vector<Fragment> fragmentsAt(const Blended& b, std::uint32_t x, std::uint32
     const glm::dvec2 middle(double(x) + 0.5 - 0.5 * kSide, double(y) + 0.5 - 0.5 * kSide);
     for (std::size_t i = 0; i < b.lines.size(); ++i) {
         const Line& line = b.lines[i];
+        const glm::vec2 direction(float(line.across.y), -float(line.across.x));
         const double distance = glm::dot(middle - line.place, line.across);
         const double area = gpu::hairStripArea(kWidth, float(distance), glm::vec2(line.across));
         // Both ends are shaded alike: the strand is straight, the camera far away.
         const glm::dvec3 radiance =
             0.5 * (glm::dvec3(b.shaded[2 * i]) + glm::dvec3(b.shaded[2 * i + 1]));
-        if (area > 0.0)
-            fragments.push_back({kAlpha * area, line.depth, radiance});
+        // Straight across the picture: along it, a strip that holds the pixel.
+        const glm::dvec4 quarters =
+            double(kAlpha) *
+            glm::dvec4(gpu::hairQuarterAreas(kWidth, float(distance), 160.0f, 0.0f, direction));
+        const double alpha = 0.25 * (quarters.x + quarters.y + quarters.z + quarters.w);
+        if (alpha > 0.0)
+            fragments.push_back({alpha, line.depth, radiance, quarters});
     }
     return fragments;
 }
 
-// Premultiplied radiance, transmittance; fragments of the same slice as one.
+// Premultiplied radiance, transmittance; fragments of the same slice as one. What shows is as much
+// as the quarters of the pixel hide.
 template <class SliceOf>
 glm::dvec4 composite(std::vector<Fragment> fragments, const SliceOf& sliceOf)
 {
     std::sort(fragments.begin(), fragments.end(),
               [](const Fragment& a, const Fragment& c) { return a.depth < c.depth; });
     glm::dvec4 sum(0.0, 0.0, 0.0, 1.0);
+    glm::dvec4 quarters(1.0);
     for (std::size_t i = 0; i < fragments.size();) {
         glm::dvec4 slice(0.0);
         const auto here = sliceOf(fragments[i]);
-        for (; i < fragments.size() && sliceOf(fragments[i]) == here; ++i)
+        for (; i < fragments.size() && sliceOf(fragments[i]) == here; ++i) {
             slice += -std::log1p(-fragments[i].alpha) * glm::dvec4(fragments[i].radiance, 1.0);
+            quarters *= 1.0 - fragments[i].quarters;
+        }
         const double through = std::exp(-slice.w);
         sum += glm::dvec4(glm::dvec3(slice) / slice.w * (sum.w * (1.0 - through)), 0.0);
         sum.w *= through;
     }
-    return sum;
+    if (fragments.empty())
+        return sum;
+    const double through = 0.25 * (quarters.x + quarters.y + quarters.z + quarters.w);
+    return {glm::dvec3(sum) * ((1.0 - through) / (1.0 - sum.w)), through};
 }
 
 } // namespace
@@ -169,7 +183,7 @@ TEST_CASE("hair blend: slices end at quantiles of the samples around")
                 }
             std::sort(depths.begin(), depths.end());
             const auto cuts = cutsAt(b, x, y);
-            for (std::size_t k = 0; k < gpu::kHairSlices; ++k) {
+            for (std::size_t k = 0; k < cuts.size(); ++k) {
                 const std::size_t rank =
                     ((k + 1) * depths.size() + gpu::kHairSlices / 2) / gpu::kHairSlices;
                 const bool cut = k + 1 < gpu::kHairSlices && rank > 0 && rank < depths.size();

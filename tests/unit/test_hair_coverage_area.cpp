@@ -66,6 +66,36 @@ TEST_CASE("hair strip area: pixels of a row share a strip's area out between the
         }
 }
 
+TEST_CASE("hair strip area: rectangles end to end add up, quarters to their pixel")
+{
+    for (int i = 0; i < 64; ++i) {
+        const double angle = 0.1 * double(i);
+        const glm::vec2 direction = normalAt(angle);
+        const float width = 0.05f + 0.02f * float(i), across = 0.01f * float(i - 32);
+        // One of length 0.9 in the pixel, and the same cut in three.
+        const float whole = gpu::hairRectangleArea(width, across, 0.9f, 0.1f, direction);
+        const float parts = gpu::hairRectangleArea(width, across, 0.2f, -0.25f, direction) +
+                            gpu::hairRectangleArea(width, across, 0.4f, 0.05f, direction) +
+                            gpu::hairRectangleArea(width, across, 0.3f, 0.4f, direction);
+        CHECK(parts == doctest::Approx(whole).epsilon(1e-5));
+        // A strip through the whole pixel: its quarters' areas are exact, and so is their mean.
+        const glm::vec4 q = gpu::hairQuarterAreas(width, across, 8.0f, 0.0f, direction);
+        const glm::vec2 normal(-direction.y, direction.x);
+        CHECK(0.25f * (q.x + q.y + q.z + q.w) ==
+              doctest::Approx(gpu::hairStripArea(width, across, normal)).epsilon(1e-4));
+        for (int k = 0; k < 4; ++k) {
+            CHECK(q[k] >= 0.0f);
+            CHECK(q[k] <= 1.0f);
+        }
+    }
+    // A level rectangle over the left half, of y from -1/2 to 0: the first quarter, in full.
+    const glm::vec4 q = gpu::hairQuarterAreas(0.5f, -0.25f, 0.5f, -0.25f, {1.0f, 0.0f});
+    CHECK(q.x == doctest::Approx(1.0f));
+    CHECK(q.y == doctest::Approx(0.0f));
+    CHECK(q.z == doctest::Approx(0.0f));
+    CHECK(q.w == doctest::Approx(0.0f));
+}
+
 TEST_CASE("hair strip area: nothing beyond reach, all of the pixel within a wide strip, no sign")
 {
     for (int i = 0; i < 64; ++i) {
