@@ -17,9 +17,10 @@ struct Case
 
 constexpr bool kConv = false, kTransposed = true;
 
-// lavapipe (Mesa 22.3.6, 256 bits), the fastest of some three to six tiles each by
-// `bench kernels --filter conv`. More sums spill, more input channels a turn pay only where a turn
-// is short, as with 2x2.
+// lavapipe (Mesa 22.3.6, 256 bits), the fastest of some three to six tiles each by the CPU time of
+// one thread, on the shapes that `bench kernels --filter conv` times. More sums spill, more input
+// channels a turn pay only where a turn is short, as with 2x2. Transposed 3x3 of stride 1 was not
+// compared.
 constexpr Case kCpu[] = {
     {{kConv, {3, 3}, {1, 1}}, 8, {16, 8, 1}},
     {{kConv, {3, 3}, {2, 2}}, 8, {16, 8, 1}},

