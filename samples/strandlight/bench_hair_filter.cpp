@@ -95,8 +95,8 @@ int run(const Options& o)
     const Size size = o.bench.quick ? Size{160, 96} : parseSize(o.size);
     const std::uint32_t runs = o.bench.quick ? 1 : o.runs;
     report.about()["settings"]["size"] = {size.width, size.height};
-    report.about()["settings"]["network"] = "hairUNet medium, initial weights";
-    const UNetDesc net = hairUNet();
+    report.about()["settings"]["network"] = "hairUNet small, initial weights";
+    const UNetDesc net = hairUNet(HairUNetSize::Small);
     Parameters parameters(context, net.parameters(), 1);
     for (const double share : {1.0, 0.3, 0.1, 0.0}) {
         const std::string name = "hair " + fixed(100.0 * share, 0) + " %";

@@ -63,6 +63,6 @@ TEST_CASE("weights: a wrong file is refused by tensor and shapes")
         [](Safetensors& f) {
             f.tensors["out.weight"] = {{12, 40, 3, 3}, std::vector<float>(12 * 40 * 9)};
         },
-        "has shape [12,40,3,3], the network needs [12,43,3,3]");
+        "has shape [12,40,3,3], the network needs [12,42,3,3]");
     refused([](Safetensors& f) { f.tensors["dec0.weight"].shape = {64, 16, 1, 4}; }, "dec0.weight");
 }
