@@ -1,6 +1,8 @@
 // Scenes for the atlas tests, and what every atlas has to keep.
 #pragma once
 
+#include <string>
+
 #include <cstdint>
 #include <vector>
 
@@ -26,5 +28,12 @@ void checkLookups(const Scene& scene, const Atlas& atlas, std::uint32_t pointsPe
 void checkTexels(const Scene& scene, const Atlas& atlas);
 // Both, of a new atlas.
 void checkAll(const Scene& scene, std::uint32_t resolution, std::uint32_t pointsPerTriangle = 40);
+
+// Of triangle t: signed in texture coordinates, in square metres.
+double uvAreaOf(const Atlas& atlas, std::uint32_t t);
+double areaOf(const Scene& scene, std::uint32_t t);
+
+// What buildAtlas refuses the scene with; empty where it does not.
+std::string errorOf(const Scene& scene, std::uint32_t resolution);
 
 } // namespace strandlight::test

@@ -12,36 +12,6 @@
 using namespace strandlight;
 using namespace strandlight::test;
 
-namespace {
-
-double uvAreaOf(const Atlas& atlas, std::uint32_t t)
-{
-    const AtlasCorner* c = &atlas.corners[std::size_t(t) * 3];
-    const glm::dvec2 ab(c[1].uv - c[0].uv);
-    const glm::dvec2 ac(c[2].uv - c[0].uv);
-    return 0.5 * (ab.x * ac.y - ab.y * ac.x);
-}
-
-double areaOf(const Scene& scene, std::uint32_t t)
-{
-    const glm::uvec3 i = scene.triangles[t];
-    const glm::dvec3 a(scene.vertices[i.x].position);
-    return 0.5 * glm::length(glm::cross(glm::dvec3(scene.vertices[i.y].position) - a,
-                                        glm::dvec3(scene.vertices[i.z].position) - a));
-}
-
-std::string errorOf(const Scene& scene, std::uint32_t resolution)
-{
-    try {
-        buildAtlas(scene, {.resolution = resolution, .gutter = 2});
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "";
-}
-
-} // namespace
-
 TEST_CASE("atlas: random soups of every size")
 {
     for (const std::uint32_t count : {1u, 2u, 3u, 17u, 100u, 1000u})
