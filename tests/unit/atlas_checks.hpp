@@ -1,9 +1,8 @@
 // Scenes for the atlas tests, and what every atlas has to keep.
 #pragma once
 
-#include <string>
-
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "engine/scene/atlas.hpp"
