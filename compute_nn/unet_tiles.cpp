@@ -57,7 +57,9 @@ void addList(RenderGraph& graph, PassBuilder& pass, const TileReach& reach, cons
     const Extent2 grid = tileGrid({1, 1, x.h >> reach.level, x.w >> reach.level});
     const std::uint32_t tiles = grid.h * grid.w;
     const std::uint32_t blocks = (1u << reach.level) + 3;
-    checkTripBudget("tile_list", 2ull * ((tiles + kLanes - 1) / kLanes) * blocks * blocks + kLanes);
+    checkTripBudget("tile_list", (std::uint64_t(touched.across) * touched.down) / kLanes +
+                                     2ull * ((tiles + kLanes - 1) / kLanes) * blocks * blocks +
+                                     kLanes);
     list.tiles = pass.write(graph.createBuffer("tiles " + name, (tiles + kTilePadding) * 4ull));
     list.arguments = pass.write(
         graph.createBuffer("tile arguments " + name, gpu::kTileShares * gpu::kTileBlocks * 12ull));

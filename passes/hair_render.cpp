@@ -106,7 +106,7 @@ public:
     void shade()
     {
         RenderGraph graph(context_);
-        graph.setTimings(true);
+        graph.setTimings(Timings::Passes);
         const BufferId lit =
             addHairShadingPasses(graph, buffers_, lights_, shadowed_, view_, settings_);
         if (settings_.distant)
@@ -139,7 +139,7 @@ public:
             view.jitter =
                 view_.jitter + (settings_.frames > 1 ? hairFrameJitter(i) : glm::vec2(0.0f));
             RenderGraph graph(context_);
-            graph.setTimings(true);
+            graph.setTimings(Timings::Passes);
             const HairSampleIds samples = addHairStrandsPass(
                 graph, buffers_, graph.importBuffer(buffers_.shaded), view, settings_,
                 std::uint32_t(lights_.size()), settings_.background == nullptr, false);
@@ -158,7 +158,7 @@ public:
     {
         Image radiance(context_, picture_, "hair over background");
         RenderGraph graph(context_);
-        graph.setTimings(true);
+        graph.setTimings(Timings::Passes);
         const ImageId blended = addBlended(graph).image;
         addBackground(graph, radiance);
         graph.output(blended);
@@ -180,7 +180,7 @@ public:
         Image filtered(context_, picture_, "filtered hair");
         Image radiance(context_, picture_, "hair over background");
         RenderGraph graph(context_);
-        graph.setTimings(true);
+        graph.setTimings(Timings::Passes);
         const Blended blended = addBlended(graph);
         const HairComposite over{graph.importImage(filtered), addBackground(graph, radiance)};
         const ParameterIds weights(graph, settings_.network->parameters);

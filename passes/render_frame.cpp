@@ -180,7 +180,7 @@ FrameResult renderFrame(Context& context, const Scene& scene, GpuScene& gpuScene
     result.textureBytes = textures.radiance.bytes() + textures.environment.bytes();
 
     RenderGraph graph(context);
-    graph.setTimings(true); // the record of what ran
+    graph.setTimings(Timings::Passes); // the record of what ran
     const GBufferIds gbuffer = addGBufferPass(graph, gpuScene, textures, camera,
                                               {.width = settings.width * settings.supersample,
                                                .height = settings.height * settings.supersample,

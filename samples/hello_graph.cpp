@@ -19,7 +19,7 @@ int main()
                   {picture});
     graph.output(picture); // what reaches no output is culled
 
-    graph.setTimings(true);
+    graph.setTimings(Timings::Passes);
     graph.run();
     savePng("hello_graph.png", graph.read(picture));
     for (const PassTiming& timing : graph.timings())

@@ -43,8 +43,9 @@ void executeGraph(RenderGraph::State& graph)
     VulkanState& vulkan = graph.context->vulkan();
     const std::vector<PlannedPass>& passes = graph.plan->passes;
     std::unique_ptr<PassTimer> timer;
-    if (graph.timingsEnabled)
-        timer = std::make_unique<PassTimer>(vulkan, std::uint32_t(passes.size()));
+    const bool byPass = graph.timed == Timings::Passes;
+    if (graph.timed != Timings::None)
+        timer = std::make_unique<PassTimer>(vulkan, byPass ? std::uint32_t(passes.size()) : 1);
     vulkan.submit([&](VkCommandBuffer commands) {
         const LayoutGuard layouts(*graph.resources);
         PassRecorder recorder(graph, commands);
@@ -54,9 +55,11 @@ void executeGraph(RenderGraph::State& graph)
         }
         for (std::uint32_t i = 0; i < passes.size(); ++i) {
             recorder.recordPass(passes[i]);
-            if (timer)
+            if (byPass)
                 timer->mark(commands, i + 1);
         }
+        if (graph.timed == Timings::Whole)
+            timer->mark(commands, 1);
         // Results are read on the host, and the next submit may reuse everything.
         fullBarrier(commands);
     });
@@ -64,8 +67,9 @@ void executeGraph(RenderGraph::State& graph)
     if (!timer)
         return;
     const std::vector<double> milliseconds = timer->milliseconds();
-    for (std::uint32_t i = 0; i < passes.size(); ++i)
-        graph.timings.push_back({graph.description.passes[passes[i].pass].name, milliseconds[i]});
+    for (std::uint32_t i = 0; i < milliseconds.size(); ++i)
+        graph.timings.push_back(
+            {byPass ? graph.description.passes[passes[i].pass].name : "graph", milliseconds[i]});
 }
 
 } // namespace strandlight

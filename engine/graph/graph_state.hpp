@@ -25,7 +25,7 @@ struct RenderGraph::State
     std::deque<Buffer> uploads;           // contents given by uploadBuffer
     std::optional<GraphPlan> plan;
     std::unique_ptr<GraphResources> resources;
-    bool timingsEnabled = false;
+    Timings timed = Timings::None;
     std::vector<PassTiming> timings;
 
     // Registers a use; returns the version the caller may bind from now on. Throws GraphError on

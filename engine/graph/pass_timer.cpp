@@ -5,8 +5,7 @@
 
 namespace strandlight {
 
-PassTimer::PassTimer(VulkanState& vulkan, std::uint32_t passes)
-    : vulkan_(vulkan), count_(passes + 1)
+PassTimer::PassTimer(VulkanState& vulkan, std::uint32_t spans) : vulkan_(vulkan), count_(spans + 1)
 {
     VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;

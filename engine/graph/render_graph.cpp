@@ -224,9 +224,9 @@ std::vector<std::byte> RenderGraph::readBytes(BufferId buffer) const
     return state_->resources->readBuffer(buffer.index);
 }
 
-void RenderGraph::setTimings(bool enabled)
+void RenderGraph::setTimings(Timings timings)
 {
-    state_->timingsEnabled = enabled;
+    state_->timed = timings;
 }
 const std::vector<PassTiming>& RenderGraph::timings() const
 {

@@ -22,6 +22,13 @@
 
 namespace strandlight {
 
+enum class Timings
+{
+    None,
+    Whole, // one row, from the first pass to the last, as it runs without being timed
+    Passes // a row a pass that ran; each is then fenced by full barriers
+};
+
 struct PassTiming
 {
     std::string pass;
@@ -88,9 +95,8 @@ public:
     }
     std::vector<std::byte> readBytes(BufferId buffer) const;
 
-    // Per pass that ran, in order; needs setTimings(true) before execute(): each pass is then
-    // fenced by full barriers.
-    void setTimings(bool enabled);
+    // Of the last execute(), in the order of passes; to be set before it.
+    void setTimings(Timings timings);
     const std::vector<PassTiming>& timings() const;
 
     std::string text() const; // the compiled plan, one line a pass

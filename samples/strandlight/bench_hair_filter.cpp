@@ -60,7 +60,6 @@ Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, con
     Image shape(context, four, "shape");
     blended.upload(hair);
     RenderGraph graph(context);
-    graph.setTimings(true);
     HairFilterInput input;
     input.samples.features = graph.importImage(features);
     input.samples.shape = graph.importImage(shape);

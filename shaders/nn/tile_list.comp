@@ -1,6 +1,6 @@
 // The tiles of a layer that have to be computed, in row-major order, and the arguments of indirect dispatches over them.
-// One workgroup: every lane decides a run of tiles, counts, and writes behind the lanes before it; no atomics, so the
-// order is the same every time.
+// One workgroup: every lane decides a run of tiles, counts, and writes behind the lanes before it, so the order is the
+// same every time.
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
@@ -15,6 +15,7 @@ layout(binding = 2, scalar) writeonly buffer Arguments { uint arguments[]; };
 layout(push_constant, scalar) uniform Push { TileListPush push; };
 
 shared uint counts[256];
+shared uint touchedBits; // of all blocks
 
 // Bits of a block's eight columns or rows that lie in [low, high).
 uint bitsWithin(int block, int low, int high)
@@ -48,10 +49,26 @@ bool needed(uint tile)
     return false;
 }
 
+// A picture without hair ends here.
+bool anythingTouched(uint lane)
+{
+    if (lane == 0u)
+        touchedBits = 0u;
+    barrier();
+    uint bits = 0u;
+    for (uint block = lane; block < push.blocksAcross * push.blocksDown; block += 256u)
+        bits |= imageLoad(touched, int(block)).x;
+    if (bits != 0u)
+        atomicOr(touchedBits, bits);
+    barrier();
+    return touchedBits != 0u;
+}
+
 void main()
 {
     uint lane = gl_LocalInvocationID.x;
-    uint all = push.tilesAcross * push.tilesDown;
+    bool anything = anythingTouched(lane);
+    uint all = anything ? push.tilesAcross * push.tilesDown : 0u;
     uint run = (all + 255u) >> 8;
     uint first = lane * run;
     uint end = min(first + run, all);
@@ -61,7 +78,7 @@ void main()
     counts[lane] = count;
     barrier();
     uint at = 0u;
-    for (uint before = 0u; before < lane; ++before)
+    for (uint before = 0u; anything && before < lane; ++before)
         at += counts[before];
     if (lane == 255u) {
         for (uint i = 0u; i < kTileShares * kTileBlocks; ++i) {

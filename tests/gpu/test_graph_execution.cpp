@@ -64,12 +64,16 @@ TEST_CASE("images: compute writes, raster samples, the copy is read back")
                .depthTest = false},
               3, 1, NoPush{}, {{gradient, Filter::Nearest}});
     graph.output(copy);
-    graph.setTimings(true);
+    graph.setTimings(Timings::Passes);
     graph.run();
     const CpuImage out = graph.read(copy);
     CHECK(out.at(36, 20).x == doctest::Approx(2.0 * 36.5 / 37.0).epsilon(1e-3));
     CHECK(out.at(0, 10).y == doctest::Approx(1.0).epsilon(1e-3));
     CHECK(graph.timings().size() == 2);
+    graph.setTimings(Timings::Whole);
+    graph.execute();
+    CHECK(graph.timings().size() == 1);
+    CHECK(graph.timings().front().milliseconds > 0.0);
     CHECK(test::context().validationMessages() == 0);
 }
 
