@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "engine/base/image.hpp"
 #include "engine/graph/render_graph.hpp"
 #include "samples/strandlight/options.hpp"
 #include "samples/strandlight/outputs.hpp"
@@ -30,13 +32,19 @@ struct Timing
     std::uint32_t runs = 0;
 };
 Timing timingOf(std::vector<double> milliseconds); // throws Error when empty
-// Runs the graph once to warm up (lavapipe compiles at the first dispatch), then `runs` times; the
-// sum of its passes by the device's clock. Throws Interrupted between runs.
+// Runs the graph once to warm up (lavapipe compiles at the first dispatch), then `runs` times, by
+// the device's clock. Throws Interrupted between runs.
 Timing timeGraph(RenderGraph& graph, std::uint32_t runs);
 // Medians by pass, in order, of another so many runs.
 std::vector<PassTiming> timePasses(RenderGraph& graph, std::uint32_t runs);
 
 std::string rowsText(const Json& rows); // as a table, columns as below
+
+// STEM.png, STEM_truth.png and STEM_flip.png in the folder, of linear pictures; what a report says
+// of them ("pictures" of a benchmark's JSON).
+Json savePictureSet(const std::filesystem::path& folder, const std::string& stem,
+                    const std::string& title, const std::string& caption, const CpuImage& ours,
+                    const CpuImage& truth);
 
 // Rows are flat JSON objects; columns are their keys in the order of first appearance.
 class BenchReport

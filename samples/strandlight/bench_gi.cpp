@@ -6,9 +6,6 @@
 #include <memory>
 
 #include "engine/base/error.hpp"
-#include "engine/base/flip.hpp"
-#include "engine/base/image_io.hpp"
-#include "engine/base/image_metrics.hpp"
 #include "passes/sg_textures.hpp"
 #include "samples/strandlight/savings_text.hpp"
 
@@ -24,18 +21,11 @@ Json savePictures(const fs::path& folder, const std::string& scene, const GiStud
     std::string stem = "gi_" + fs::path(scene).filename().string();
     for (char& c : stem)
         c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-    const CpuImage ours = displayImage(study.picture, 0.0f);
-    const CpuImage truth = displayImage(study.truth, 0.0f);
-    savePng(folder / (stem + ".png"), ours);
-    savePng(folder / (stem + "_truth.png"), truth);
-    savePng(folder / (stem + "_flip.png"), heatmap(computeFlip(ours, truth)));
     const GiRow& base = study.rows.front();
-    return {{"title", scene},
-            {"ours", stem + ".png"},
-            {"truth", stem + "_truth.png"},
-            {"error", stem + "_flip.png"},
-            {"caption", "Baked in " + fixed(base.bakeSeconds, 1) + " s with an atlas of " +
-                            std::to_string(base.choice.atlas) + "; FLIP " + fixed(base.flip, 3)}};
+    return savePictureSet(folder, stem, scene,
+                          "Baked in " + fixed(base.bakeSeconds, 1) + " s with an atlas of " +
+                              std::to_string(base.choice.atlas) + "; FLIP " + fixed(base.flip, 3),
+                          study.picture, study.truth);
 }
 
 Json passesOf(const std::string& scene, const FrameResult& frame, const BakeSavings& savings)

@@ -14,7 +14,7 @@
 #include "passes/hair_network.hpp"
 #include "passes/hair_study.hpp"
 #include "passes/hair_truth.hpp"
-#include "samples/strandlight/bench.hpp"
+#include "samples/strandlight/bench_hair.hpp"
 
 namespace strandlight::cli {
 
@@ -26,7 +26,7 @@ struct HairBench
     std::vector<std::string> weights;
     std::uint32_t samples = 0; // of the truth; 0: 1024, quick 256
     bool keep = true;          // truths in the cache folder
-    std::string out;           // folder of strips
+    std::string out;           // folder of pictures
     std::string mohawk;
 };
 
@@ -120,17 +120,6 @@ double networkMilliseconds(const HairFrame& frame)
     return sum;
 }
 
-// Pictures side by side.
-CpuImage strip(const std::vector<CpuImage>& pictures)
-{
-    CpuImage all(pictures[0].width * std::uint32_t(pictures.size()), pictures[0].height);
-    for (std::uint32_t i = 0; i < pictures.size(); ++i)
-        for (std::uint32_t y = 0; y < all.height; ++y)
-            for (std::uint32_t x = 0; x < pictures[i].width; ++x)
-                all.at(i * pictures[i].width + x, y) = pictures[i].at(x, y);
-    return all;
-}
-
 std::uint32_t truthSamples(const HairBench& o)
 {
     return o.samples > 0 ? o.samples : o.common.quick ? 256 : 1024;
@@ -166,7 +155,6 @@ public:
         const HairFrame truth =
             hairTruth(context_, subject_.hair, head_ ? &*head_ : nullptr, subject_.camera, settings,
                       options_.keep ? cacheFolder() : std::filesystem::path());
-        std::vector<CpuImage> pictures;
         double base = 0.0;
         for (const Method& method : methodsOf(options_.common.quick, networks_,
                                               context_.device().missingForHalves.empty())) {
@@ -175,10 +163,11 @@ public:
             const HairError error = compareHair(frame, truth);
             check(subject_.name + " " + method.name, error);
             const HairFrame moved = nextFrame(method); // timed: the first one builds pipelines
-            base = pictures.empty() ? error.picture.rmse : base;
-            if (pictures.empty() || (method.filter == HairFilter::UNet && pictures.size() == 1))
-                pictures.push_back(frame.radiance);
+            base = base > 0.0 ? base : error.picture.rmse;
             Json row = {{"name", subject_.name + " " + method.name},
+                        {"scene", subject_.name},
+                        {"method", method.name},
+                        {"series", hairSeries(method.name)},
                         {"rmse", error.picture.rmse},
                         {"rmse_over_4", error.picture.rmse / base},
                         {"psnr_db", error.picture.psnr},
@@ -200,13 +189,24 @@ public:
                 row["rmse_from_fp32"] = compareHair(frame, render(floats)).picture.rmse;
             }
             report.add(row);
+            if (method.network && pictures_.is_null() && !options_.out.empty())
+                pictures_ = savePictures(method.name, frame, truth, error);
         }
-        pictures.push_back(truth.radiance);
-        if (!options_.out.empty())
-            writePicture(options_.out + "/" + subject_.name + ".png", strip(pictures), 0.0f);
     }
 
+    // Of the first network, for the report; null without a folder or a network.
+    const Json& pictures() const { return pictures_; }
+
 private:
+    Json savePictures(const std::string& method, const HairFrame& frame, const HairFrame& truth,
+                      const HairError& error) const
+    {
+        return savePictureSet(options_.out, "hair_" + subject_.name, subject_.name,
+                              method + ": RMSE " + fixed(error.picture.rmse, 4) + ", FLIP " +
+                                  fixed(error.picture.flip, 4),
+                              frame.radiance, truth.radiance);
+    }
+
     HairRenderSettings settingsOf(const Method& method) const
     {
         HairRenderSettings settings = settings_;
@@ -240,7 +240,33 @@ private:
     const HairStudyCase& subject_;
     HairRenderSettings settings_;
     std::optional<Scene> head_;
+    Json pictures_;
 };
+
+// The table of the console: what is read one frame at a time.
+void print(const Json& rows)
+{
+    Json some = rows;
+    for (Json& row : some) {
+        for (const char* key : {"scene", "method", "series"})
+            row.erase(key);
+    }
+    std::fputs(rowsText(some).c_str(), stdout);
+}
+
+void describe(BenchReport& report, const Json& pictures)
+{
+    Json& about = report.about();
+    about["facts"] = hairFacts(report.rows());
+    for (const Json& fact : about["facts"])
+        std::printf("%s: %s\n", fact.value("label", "").c_str(), fact.value("value", "").c_str());
+    for (Json& mean : hairMeans(report.rows()))
+        report.add(std::move(mean));
+    about["columns"] = hairColumns();
+    about["plots"] = hairPlots(report.rows());
+    about["tables"] = hairTables();
+    about["pictures"] = pictures;
+}
 
 int benchHair(const HairBench& o)
 {
@@ -252,13 +278,20 @@ int benchHair(const HairBench& o)
     std::vector<NamedNetwork> networks = openNetworks(context, o.weights);
     const std::vector<HairStudyCase> cases = heldOutHair(o.mohawk, o.common.quick ? 4000 : 0);
     Progress progress("bench hair", cases.size());
+    Json pictures = Json::array();
     for (std::size_t i = 0; i < cases.size(); ++i) {
         progress.update(i);
-        if (report.wants(cases[i].name))
-            CaseBench(context, o, networks, cases[i]).run(report);
+        if (!report.wants(cases[i].name))
+            continue;
+        CaseBench bench(context, o, networks, cases[i]);
+        bench.run(report);
+        if (!bench.pictures().is_null())
+            pictures.push_back(bench.pictures());
     }
     progress.update(cases.size());
-    report.finish();
+    print(report.rows());
+    describe(report, pictures);
+    report.write();
     return 0;
 }
 
@@ -284,12 +317,12 @@ Command addBenchHair(CLI::App& bench)
         ->type_name("N")
         ->check(CLI::Range(4u, 1u << 14));
     app->add_flag("!--no-cache", o->keep, "Draw truths anew and keep none");
-    app->add_option("--out", o->out, "Folder for strips: 4 averaged, network, truth")
+    app->add_option("--out", o->out, "Folder for pictures: the first network's, the truth, FLIP")
         ->type_name("DIR")
         ->check(CLI::ExistingDirectory);
     app->add_option("--mohawk", o->mohawk, "The sixth frame's file; a groom where it is none")
         ->type_name("FILE");
-    addExamples(*app, "  strandlight bench hair --quick --out strips --json hair.json\n"
+    addExamples(*app, "  strandlight bench hair --quick --out out/bench --json hair.json\n"
                       "  strandlight bench hair --filter ponytail");
     return {app, [o] { return benchHair(*o); }};
 }

@@ -193,7 +193,11 @@ std::string idOf(const Json& bench)
 
 std::string titleOf(const std::string& id)
 {
-    return id == "gi" ? "Baked light" : id == "hair" ? "Hair" : id == "kernels" ? "Kernels" : id;
+    return id == "gi"        ? "Baked light"
+           : id == "hair"    ? "Hair"
+           : id == "skip"    ? "What a scene does not need"
+           : id == "kernels" ? "Kernels"
+                             : id;
 }
 
 std::string section(const Json& bench, const std::filesystem::path& folder)

@@ -34,7 +34,7 @@ h3 { font-size: 1.05rem; font-weight: 650; margin: 0 0 .2rem; }
 .pictures .triptych { max-width: 44rem; margin: 1rem 0 0; } .pictures img { image-rendering: auto; }
 .wide-table { overflow-x: auto; margin: 2.2rem 0; } .wide-table th.n { text-align: right; padding-right: 0; padding-left: 1rem; }
 .wide-table thead th { color: var(--soft); font-size: .8125rem; vertical-align: bottom; } .wide-table td { white-space: nowrap; }
-.wide-table tbody th { color: var(--ink); } caption small { font-weight: 400; font-size: .875rem; margin-left: .5rem; }
+.wide-table tbody th { color: var(--ink); min-width: 15rem; } caption small { font-weight: 400; font-size: .875rem; margin-left: .5rem; }
 #hint { position: fixed; z-index: 2; max-width: 22rem; padding: .5rem .7rem; font: .8125rem/1.45 var(--sans); white-space: pre-line;
   background: var(--ink); color: var(--ground); border-radius: 4px; pointer-events: none; font-variant-numeric: tabular-nums; }
 )css";

@@ -5,6 +5,9 @@
 
 #include "engine/base/error.hpp"
 #include "engine/base/file.hpp"
+#include "engine/base/flip.hpp"
+#include "engine/base/image_io.hpp"
+#include "engine/base/image_metrics.hpp"
 #include "engine/base/progress.hpp"
 #include "samples/strandlight/bench.hpp"
 
@@ -164,6 +167,22 @@ BenchReport::BenchReport(const std::string& command, const BenchOptions& options
 bool BenchReport::wants(const std::string& name) const
 {
     return name.find(options_.filter) != std::string::npos;
+}
+
+Json savePictureSet(const std::filesystem::path& folder, const std::string& stem,
+                    const std::string& title, const std::string& caption, const CpuImage& ours,
+                    const CpuImage& truth)
+{
+    const CpuImage shown = displayImage(ours, 0.0f);
+    const CpuImage wanted = displayImage(truth, 0.0f);
+    savePng(folder / (stem + ".png"), shown);
+    savePng(folder / (stem + "_truth.png"), wanted);
+    savePng(folder / (stem + "_flip.png"), heatmap(computeFlip(shown, wanted)));
+    return {{"title", title},
+            {"ours", stem + ".png"},
+            {"truth", stem + "_truth.png"},
+            {"error", stem + "_flip.png"},
+            {"caption", caption}};
 }
 
 void BenchReport::finish() const
