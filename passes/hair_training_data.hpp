@@ -17,7 +17,7 @@ struct HairTrainingSettings
     std::uint32_t size = 320;         // pixels a side, a multiple of 8
     std::uint32_t repeats = 4;        // noises, a multiple of 2
     std::uint32_t targetSamples = 64; // a multiple of 8: half of them under each shadow noise
-    float strandShare = 1.0f;         // of the look's strands, in (0, 1]; for tests
+    float strandShare = 1.0f;         // of the look's strands, in (0, 1], wider by its root
 };
 
 // Planes of one repeat: 26 as kHairInputPlanes says, then the premultiplied radiance that is

@@ -1,4 +1,5 @@
 // strandlight hair train: the filter network's weights from procedural grooms.
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -33,6 +34,14 @@ struct Options
 };
 
 // What the weights were made with: enough to make them again.
+// The shortest text that is read as the same number.
+std::string exactly(auto value)
+{
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof(text), value).ptr};
+}
+
+// What makes the same weights again, given folders.
 std::string commandLine(const Options& o)
 {
     const HairTrainSettings& t = o.train;
@@ -45,11 +54,11 @@ std::string commandLine(const Options& o)
     add("--frames", o.pool.frames);
     add("--frame-size", o.pool.frame.size);
     add("--target-spp", o.pool.frame.targetSamples);
-    line += " --net " + o.net;
+    line += " --strand-share " + exactly(o.pool.frame.strandShare) + " --net " + o.net;
     add("--steps", t.steps);
     add("--batch", t.batch);
     add("--crop", t.crop);
-    line += " --rate " + fixed(t.learningRate, 6);
+    line += " --rate " + exactly(t.learningRate);
     add("--seed", t.seed);
     if (!o.initial.empty())
         line += " --init " + fs::path(o.initial).filename().string();
