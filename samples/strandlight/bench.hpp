@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,22 @@ struct Timing
     std::uint32_t runs = 0;
 };
 Timing timingOf(std::vector<double> milliseconds); // throws Error when empty
-// Runs the graph once to warm up (lavapipe compiles at the first dispatch), then `runs` times, by
-// the device's clock. Throws Interrupted between runs.
-Timing timeGraph(RenderGraph& graph, std::uint32_t runs);
+// Graphs that run in turns, each once a round, so that a ratio compares neighbours in time: the
+// clock of a shared machine wanders by half within one benchmark.
+class RoundTimings
+{
+public:
+    // Every graph once to warm up (lavapipe compiles at the first dispatch), then `rounds` times,
+    // as a whole by the device's clock. Throws Interrupted between runs.
+    RoundTimings(std::span<RenderGraph* const> graphs, std::uint32_t rounds);
+    Timing of(std::size_t graph) const { return timingOf(milliseconds_[graph]); }
+    // Median over the rounds of the time of `a` over that of `b`.
+    double ratio(std::size_t a, std::size_t b) const;
+
+private:
+    std::vector<std::vector<double>> milliseconds_; // [graph][round]
+};
+Timing timeGraph(RenderGraph& graph, std::uint32_t runs); // alone
 // Medians by pass, in order, of another so many runs.
 std::vector<PassTiming> timePasses(RenderGraph& graph, std::uint32_t runs);
 

@@ -12,21 +12,21 @@ namespace strandlight::cli {
 
 namespace {
 
-constexpr std::uint32_t kRuns = 9;
-
-KernelMeasurement measureMultiplyAdd(Context& context, bool quick)
+Ceiling measureMultiplyAdd(Context& context, const BenchOptions& o)
 {
     // One workgroup's worth of work is long against its start; enough groups to fill any device.
-    const std::uint32_t threads = quick ? 1024 : 16384;
-    const gpu::BenchLoopPush push{.turns = quick ? 32u : 128u, .factor = 0.5f, .addend = 1.0f};
-    RenderGraph graph(context);
+    const std::uint32_t threads = o.quick ? 1024 : 16384;
+    const gpu::BenchLoopPush push{.turns = o.quick ? 32u : 128u, .factor = 0.5f, .addend = 1.0f};
+    Ceiling ceiling;
+    ceiling.graph = std::make_unique<RenderGraph>(context);
+    RenderGraph& graph = *ceiling.graph;
     PassBuilder pass = graph.addComputePass("multiply-add");
     const BufferId result = pass.write(graph.createBuffer("result", threads * 4));
     pass.dispatch(kernels::bench_madd, {threads, 1, 1}, push, {result});
     graph.output(result);
 
-    KernelMeasurement m;
-    m.timing = timeGraph(graph, kRuns);
+    KernelMeasurement& m = ceiling.found;
+    m.timing = timeGraph(graph, roundsOf(o));
     m.flops = 2.0 * threads * push.turns * gpu::kBenchUnroll * gpu::kBenchChains;
     const std::vector<float> values = graph.read<float>(result);
     std::vector<double> got, wanted;
@@ -43,21 +43,23 @@ KernelMeasurement measureMultiplyAdd(Context& context, bool quick)
         wanted.push_back(sum);
     }
     m.error = normError(got, wanted);
-    return m;
+    return ceiling;
 }
 
-KernelMeasurement measureExponential(Context& context, bool quick)
+Ceiling measureExponential(Context& context, const BenchOptions& o)
 {
-    const std::uint32_t threads = quick ? 1024 : 16384;
-    const gpu::BenchLoopPush push{.turns = quick ? 16u : 64u, .factor = -0.1f, .addend = 0.0f};
-    RenderGraph graph(context);
+    const std::uint32_t threads = o.quick ? 1024 : 16384;
+    const gpu::BenchLoopPush push{.turns = o.quick ? 16u : 64u, .factor = -0.1f, .addend = 0.0f};
+    Ceiling ceiling;
+    ceiling.graph = std::make_unique<RenderGraph>(context);
+    RenderGraph& graph = *ceiling.graph;
     PassBuilder pass = graph.addComputePass("exp");
     const BufferId result = pass.write(graph.createBuffer("result", threads * 4));
     pass.dispatch(kernels::bench_exp, {threads, 1, 1}, push, {result});
     graph.output(result);
 
-    KernelMeasurement m;
-    m.timing = timeGraph(graph, kRuns);
+    KernelMeasurement& m = ceiling.found;
+    m.timing = timeGraph(graph, roundsOf(o));
     m.flops = double(threads) * push.turns * gpu::kBenchExpUnroll * gpu::kBenchExpChains;
     const std::vector<float> values = graph.read<float>(result);
     std::vector<double> got, wanted;
@@ -73,25 +75,27 @@ KernelMeasurement measureExponential(Context& context, bool quick)
         wanted.push_back(sum);
     }
     m.error = normError(got, wanted);
-    return m;
+    return ceiling;
 }
 
-KernelMeasurement measureTriad(Context& context, bool quick)
+Ceiling measureTriad(Context& context, const BenchOptions& o)
 {
     // Three buffers of 128 MiB, the most that one binding takes: larger than any cache.
-    const std::uint32_t count = quick ? 1u << 20 : 1u << 25;
+    const std::uint32_t count = o.quick ? 1u << 20 : 1u << 25;
     const float factor = 3.0f;
-    Buffer b(context, count * 4ull, "triad b"), c(context, count * 4ull, "triad c"),
-        a(context, count * 4ull, "triad a");
     std::vector<float> left(count), right(count);
     for (std::uint32_t i = 0; i < count; ++i) {
         left[i] = float(i % 1021);
         right[i] = float(i % 257) * 0.25f;
     }
+    Ceiling ceiling;
+    for (const char* name : {"triad a", "triad b", "triad c"})
+        ceiling.buffers.push_back(std::make_unique<Buffer>(context, count * 4ull, name));
+    Buffer &a = *ceiling.buffers[0], &b = *ceiling.buffers[1], &c = *ceiling.buffers[2];
     b.upload(std::as_bytes(std::span(left)));
     c.upload(std::as_bytes(std::span(right)));
-
-    RenderGraph graph(context);
+    ceiling.graph = std::make_unique<RenderGraph>(context);
+    RenderGraph& graph = *ceiling.graph;
     const BufferId bId = graph.importBuffer(b), cId = graph.importBuffer(c);
     PassBuilder pass = graph.addComputePass("triad");
     pass.read(bId);
@@ -100,8 +104,8 @@ KernelMeasurement measureTriad(Context& context, bool quick)
     pass.dispatch(kernels::bench_triad, {count / 4, 1, 1}, gpu::BenchTriadPush{factor},
                   {bId, cId, result});
 
-    KernelMeasurement m;
-    m.timing = timeGraph(graph, kRuns);
+    KernelMeasurement& m = ceiling.found;
+    m.timing = timeGraph(graph, roundsOf(o));
     m.bytes = 12.0 * count;
     const std::vector<float> values = a.downloadAs<float>();
     std::vector<double> got, wanted;
@@ -110,7 +114,7 @@ KernelMeasurement measureTriad(Context& context, bool quick)
         wanted.push_back(left[i] + double(factor) * right[i]);
     }
     m.error = normError(got, wanted);
-    return m;
+    return ceiling;
 }
 
 } // namespace
@@ -135,12 +139,14 @@ double normError(const std::vector<double>& got, const std::vector<double>& want
 
 Ceilings measureCeilings(Context& context, const BenchOptions& options)
 {
-    const Ceilings ceilings{measureMultiplyAdd(context, options.quick),
-                            measureExponential(context, options.quick),
-                            measureTriad(context, options.quick)};
-    requireCheck("ceiling multiply-add", ceilings.multiplyAdd);
-    requireCheck("ceiling exp", ceilings.exponential);
-    requireCheck("ceiling triad", ceilings.triad);
+    Ceilings ceilings{measureMultiplyAdd(context, options), measureExponential(context, options),
+                      measureTriad(context, options)};
+    requireCheck("ceiling multiply-add", ceilings.multiplyAdd.found);
+    requireCheck("ceiling exp", ceilings.exponential.found);
+    requireCheck("ceiling triad", ceilings.triad.found);
+    KernelMeasurement& exponential = ceilings.exponential.found;
+    timeBeside(exponential, ceilings, *ceilings.exponential.graph, {}, roundsOf(options));
+    ceilings.flopsOfExp = 1.0 / exponential.ofMultiplyAdd;
     return ceilings;
 }
 

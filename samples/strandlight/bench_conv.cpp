@@ -13,12 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSamples = 512;      // outputs compared
 constexpr std::uint32_t kWeightSamples = 24; // weight gradients compared: each sums all pixels
-constexpr std::uint32_t kRuns = 9;
-
-std::uint32_t runsOf(const BenchOptions& o)
-{
-    return o.quick ? 2 : kRuns;
-}
+constexpr std::uint32_t kNaiveRounds = 3;    // two seconds each
 
 // A convolution on an image of this size; `quick` makes it smaller.
 template <class Desc> struct ConvCase
@@ -104,26 +99,35 @@ double forwardError(const Desc& d, const ConvData& data, std::span<const float> 
     return normError(got, wanted);
 }
 
+template <class Desc> struct ForwardGraph
+{
+    ForwardGraph(Context& context, const Desc& desc, const ConvData& data)
+        : graph(context), y(forward(graph, desc, data.upload(graph), data.uploadWeights(graph),
+                                    createTensor(graph, "y", data.yDesc)))
+    {
+        graph.output(y.buffer);
+    }
+    RenderGraph graph;
+    TensorId y;
+};
+
 template <class Desc>
-KernelMeasurement measureForward(Context& context, const ConvCase<Desc>& c, const BenchOptions& o)
+KernelMeasurement measureForward(Context& context, const ConvCase<Desc>& c, const BenchOptions& o,
+                                 Ceilings& ceilings)
 {
     const ConvData data(c.desc, c.input(o.quick));
-    RenderGraph graph(context);
-    const TensorId x = data.upload(graph);
-    const TensorId y =
-        forward(graph, c.desc, x, data.uploadWeights(graph), createTensor(graph, "y", data.yDesc));
-    graph.output(y.buffer);
+    ForwardGraph<Desc> conv(context, c.desc, data);
     KernelMeasurement m;
-    m.timing = timeGraph(graph, runsOf(o));
     m.flops = convFlops(c.desc, data.xDesc);
     m.bytes = double(data.xDesc.bytes() + data.yDesc.bytes() + data.weights.size() * 4);
-    m.error = forwardError(c.desc, data, graph.read<float>(y.buffer));
+    timeBeside(m, ceilings, conv.graph, {}, roundsOf(o));
+    m.error = forwardError(c.desc, data, conv.graph.template read<float>(conv.y.buffer));
     return m;
 }
 
 template <class Desc>
 KernelMeasurement measureWeightGradient(Context& context, const ConvCase<Desc>& c,
-                                        const BenchOptions& o)
+                                        const BenchOptions& o, Ceilings& ceilings)
 {
     const ConvData data(c.desc, c.input(o.quick));
     RenderGraph graph(context);
@@ -137,9 +141,9 @@ KernelMeasurement measureWeightGradient(Context& context, const ConvCase<Desc>& 
     const BufferId gradient = backwardWeight(graph, c.desc, x, dY, {zero, 0, data.weightCount});
     graph.output(gradient);
     KernelMeasurement m;
-    m.timing = timeGraph(graph, runsOf(o));
     m.flops = convFlops(c.desc, data.xDesc);
     m.bytes = double(data.xDesc.bytes() + data.yDesc.bytes() + data.weights.size() * 4);
+    timeBeside(m, ceilings, graph, {}, roundsOf(o));
     const std::vector<float> values = graph.read<float>(gradient);
     std::vector<double> got, wanted;
     for (std::uint32_t s = 0; s < kWeightSamples; ++s) {
@@ -157,7 +161,7 @@ KernelMeasurement measureWeightGradient(Context& context, const ConvCase<Desc>& 
 // One invocation an output, storage buffers, bounds tested at every tap: what a first version looks
 // like.
 KernelMeasurement measureNaive(Context& context, const ConvCase<Conv2dDesc>& c,
-                               const BenchOptions& o)
+                               const BenchOptions& o, Ceilings& ceilings)
 {
     const ConvData data(c.desc, c.input(o.quick));
     RenderGraph graph(context);
@@ -177,12 +181,12 @@ KernelMeasurement measureNaive(Context& context, const ConvCase<Conv2dDesc>& c,
                                      .padding = c.desc.padding.h},
                   {x.buffer, weights.block, to});
     graph.output(to);
+    ForwardGraph<Conv2dDesc> engine(context, c.desc, data);
     KernelMeasurement m;
-    m.timing = timeGraph(graph, 2);
     m.flops = convFlops(c.desc, data.xDesc);
+    const RoundTimings timings = timeBeside(m, ceilings, graph, {&engine.graph}, kNaiveRounds);
+    m.more["engine_times_faster"] = timings.ratio(0, 1);
     m.error = forwardError(c.desc, data, graph.read<float>(to));
-    const KernelMeasurement engine = measureForward(context, c, o);
-    m.more["engine_times_faster"] = m.timing.median / engine.timing.median;
     return m;
 }
 
@@ -205,8 +209,8 @@ void addConvBenchCases(std::vector<KernelCase>& cases)
         {{.in = 64, .out = 32}, 160, 90}};
     const auto add = [&](const std::string& name, const auto& c, auto measure) {
         cases.push_back(
-            {name + nameOf(c), [=](Context& context, const BenchOptions& o, const Ceilings&) {
-                 return measure(context, c, o);
+            {name + nameOf(c), [=](Context& context, const BenchOptions& o, Ceilings& ceilings) {
+                 return measure(context, c, o, ceilings);
              }});
     };
     for (const auto& c : convs)

@@ -70,7 +70,7 @@ double runSelf(std::vector<std::string> arguments, const fs::path& caches)
 }
 
 // The smallest work that runs every kernel: what remains is starting up and compiling.
-KernelMeasurement measureFirstRun(Context&, const BenchOptions& o, const Ceilings&)
+KernelMeasurement measureFirstRun(Context&, const BenchOptions& o, Ceilings&)
 {
     const TemporaryFolder folder;
     const fs::path caches = folder.path() / "caches";

@@ -12,23 +12,23 @@ namespace strandlight::cli {
 
 namespace {
 
-Json describe(const std::string& name, const KernelMeasurement& m, const Ceilings& ceilings)
+constexpr std::uint32_t kRounds = 15;
+
+Json describe(const std::string& name, const KernelMeasurement& m)
 {
     Json row = {{"name", name},
                 {"error", m.error},
                 {"ms_median", m.timing.median},
                 {"ms_minimum", m.timing.minimum},
                 {"runs", m.timing.runs}};
-    if (m.flops > 0.0) {
-        const double gflops = m.flops / m.timing.median * 1e-6;
-        row["gflops"] = gflops;
-        row["of_multiply_add"] = gflops / ceilings.gflops();
-    }
-    if (m.bytes > 0.0) {
-        const double gigabytes = m.bytes / m.timing.median * 1e-6;
-        row["gb_per_s"] = gigabytes;
-        row["of_triad"] = gigabytes / ceilings.gigabytes();
-    }
+    if (m.flops > 0.0)
+        row["gflops"] = m.flops / m.timing.median * 1e-6;
+    if (m.ofMultiplyAdd > 0.0)
+        row["of_multiply_add"] = m.ofMultiplyAdd;
+    if (m.bytes > 0.0)
+        row["gb_per_s"] = m.bytes / m.timing.median * 1e-6;
+    if (m.ofTriad > 0.0)
+        row["of_triad"] = m.ofTriad;
     row.update(m.more);
     return row;
 }
@@ -46,6 +46,25 @@ std::vector<KernelCase> allCases(const Context& context)
 
 } // namespace
 
+std::uint32_t roundsOf(const BenchOptions& options)
+{
+    return options.quick ? 2 : kRounds;
+}
+
+RoundTimings timeBeside(KernelMeasurement& m, Ceilings& ceilings, RenderGraph& graph,
+                        std::vector<RenderGraph*> others, std::uint32_t rounds)
+{
+    const bool arithmetic = m.flops > 0.0;
+    const Ceiling& ceiling = arithmetic ? ceilings.multiplyAdd : ceilings.triad;
+    others.insert(others.begin(), &graph);
+    others.push_back(ceiling.graph.get());
+    RoundTimings timings(others, rounds);
+    m.timing = timings.of(0);
+    const double work = arithmetic ? m.flops / ceiling.found.flops : m.bytes / ceiling.found.bytes;
+    (arithmetic ? m.ofMultiplyAdd : m.ofTriad) = work / timings.ratio(0, others.size() - 1);
+    return timings;
+}
+
 int benchKernels(const BenchOptions& o)
 {
     Context context = openDevice(o.device);
@@ -54,18 +73,20 @@ int benchKernels(const BenchOptions& o)
     if (std::none_of(cases.begin(), cases.end(),
                      [&](const KernelCase& c) { return report.wants(c.name); }))
         throw Error("--filter: no case's name holds '" + o.filter + "'");
-    const Ceilings ceilings = measureCeilings(context, o);
+    Ceilings ceilings = measureCeilings(context, o);
     report.about()["ceilings"] = {
         {"multiply_add_gflops", ceilings.gflops()},
-        {"multiply_add", "chains of a*b+c in registers, best run; of_multiply_add is over this"},
-        {"exp_flops", ceilings.flopsOfExp()},
+        {"multiply_add", "chains of a*b+c in registers, best run"},
+        {"of_multiply_add", "median over rounds of a case and, just after it, the multiply-adds"},
+        {"exp_flops", ceilings.flopsOfExp},
         {"exp", "multiply-adds' flops in the time of one exponential of the network kernels"},
         {"triad_gb_per_s", ceilings.gigabytes()},
-        {"triad", "a = b + s c from memory, 12 bytes an element, best run; of_triad is over this"}};
+        {"triad", "a = b + s c from memory, 12 bytes an element, best run"},
+        {"of_triad", "as of_multiply_add, where no flops are counted"}};
     if (o.quick)
-        std::printf("quick: images of a quarter of the size named, two runs each\n");
-    report.add(describe("ceiling multiply-add", ceilings.multiplyAdd, ceilings));
-    report.add(describe("ceiling triad", ceilings.triad, ceilings));
+        std::printf("quick: images of a quarter of the size named, two rounds each\n");
+    report.add(describe("ceiling multiply-add", ceilings.multiplyAdd.found));
+    report.add(describe("ceiling triad", ceilings.triad.found));
     Progress progress("bench kernels", cases.size());
     for (std::size_t i = 0; i < cases.size(); ++i) {
         throwIfInterrupted();
@@ -74,7 +95,7 @@ int benchKernels(const BenchOptions& o)
             continue;
         const KernelMeasurement m = cases[i].measure(context, o, ceilings);
         requireCheck(cases[i].name, m);
-        report.add(describe(cases[i].name, m, ceilings));
+        report.add(describe(cases[i].name, m));
     }
     progress.update(cases.size());
     report.finish();

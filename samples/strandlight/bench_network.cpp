@@ -14,7 +14,6 @@ namespace strandlight::cli {
 namespace {
 
 constexpr std::uint32_t kSeed = 1;
-constexpr std::uint32_t kRuns = 9;
 
 struct NetworkCase
 {
@@ -76,16 +75,20 @@ double forwardError(Context& context, const NetworkCase& c, Parameters& paramete
     return normError({y.begin(), y.end()}, twin.output);
 }
 
-Timing timeForward(Context& context, const NetworkCase& c, Parameters& parameters,
-                   const TensorDesc& x, std::uint32_t runs, bool halves)
+struct ForwardGraph
 {
-    RenderGraph graph(context);
+    ForwardGraph(Context& context, const NetworkCase& c, Parameters& parameters,
+                 const TensorDesc& x, bool halves)
+        : graph(context)
+    {
+        if (halves)
+            guard.emplace(graph);
+        addForward(graph, c, parameters, x, randomValues(x.elements(), 5),
+                   guard ? &*guard : nullptr);
+    }
+    RenderGraph graph;
     std::optional<HalfGuard> guard;
-    if (halves)
-        guard.emplace(graph);
-    addForward(graph, c, parameters, x, randomValues(x.elements(), 5), guard ? &*guard : nullptr);
-    return timeGraph(graph, runs);
-}
+};
 
 void addStep(RenderGraph& graph, const NetworkCase& c, Parameters& parameters, const TensorDesc& x)
 {
@@ -104,44 +107,53 @@ TensorDesc inputOf(const NetworkCase& c, bool quick)
     return x;
 }
 
-KernelMeasurement measureForward(Context& context, const NetworkCase& c, const BenchOptions& o)
+KernelMeasurement measureForward(Context& context, const NetworkCase& c, const BenchOptions& o,
+                                 Ceilings& ceilings)
 {
     Parameters parameters(context, c.net.parameters(), kSeed);
     const TensorDesc x = inputOf(c, o.quick);
+    ForwardGraph forward(context, c, parameters, x, false);
     KernelMeasurement m;
     m.error = forwardError(context, c, parameters, false);
-    m.timing = timeForward(context, c, parameters, x, o.quick ? 2 : kRuns, false);
     m.flops = forwardFlops(c.net, x);
+    timeBeside(m, ceilings, forward.graph, {}, roundsOf(o));
     return m;
 }
 
 // Activations as halves: one rounding of 2^-11 a stored value, so an error of that size.
-KernelMeasurement measureHalves(Context& context, const NetworkCase& c, const BenchOptions& o)
+KernelMeasurement measureHalves(Context& context, const NetworkCase& c, const BenchOptions& o,
+                                Ceilings& ceilings)
 {
-    KernelMeasurement m = measureForward(context, c, o);
-    const double floats = m.timing.median;
     Parameters parameters(context, c.net.parameters(), kSeed);
+    const TensorDesc x = inputOf(c, o.quick);
+    ForwardGraph halves(context, c, parameters, x, true), floats(context, c, parameters, x, false);
+    KernelMeasurement m;
     m.error = forwardError(context, c, parameters, true);
     m.tolerance = 0x1p-10 * (2.0 * c.net.levels() + 1.0);
-    m.timing = timeForward(context, c, parameters, inputOf(c, o.quick), o.quick ? 2 : kRuns, true);
-    m.more["over_fp32"] = m.timing.median / floats;
+    m.flops = forwardFlops(c.net, x);
+    const RoundTimings timings =
+        timeBeside(m, ceilings, halves.graph, {&floats.graph}, roundsOf(o));
+    m.more["over_fp32"] = timings.ratio(0, 1);
     return m;
 }
 
 // The gradients of this step are what tests/nn/test_training.cpp traces; here its forward part is
-// checked.
-KernelMeasurement measureStep(Context& context, const NetworkCase& c, const BenchOptions& o)
+// checked. The forward pass beside it has parameters of its own, which stay as they are.
+KernelMeasurement measureStep(Context& context, const NetworkCase& c, const BenchOptions& o,
+                              Ceilings& ceilings)
 {
-    KernelMeasurement m = measureForward(context, c, o);
-    const double forward = m.timing.median;
-    Parameters parameters(context, c.net.parameters(), kSeed);
+    Parameters trained(context, c.net.parameters(), kSeed),
+        parameters(context, c.net.parameters(), kSeed);
     const TensorDesc x = inputOf(c, o.quick);
-    RenderGraph graph(context);
-    addStep(graph, c, parameters, x);
-    m.timing = timeGraph(graph, o.quick ? 2 : kRuns);
+    RenderGraph step(context);
+    addStep(step, c, trained, x);
+    ForwardGraph forward(context, c, parameters, x, false);
+    KernelMeasurement m;
+    m.error = forwardError(context, c, parameters, false);
     // Backward: a data and a weight gradient of each layer, but no data gradient of the first.
     m.flops = 3.0 * forwardFlops(c.net, x) - convFlops(c.net.encoder(c.net.head > 0 ? 0 : 1), x);
-    m.more["over_forward"] = m.timing.median / forward;
+    const RoundTimings timings = timeBeside(m, ceilings, step, {&forward.graph}, roundsOf(o));
+    m.more["over_forward"] = timings.ratio(0, 1);
     return m;
 }
 
@@ -155,20 +167,17 @@ std::vector<NetworkCase> networks()
 
 void addNetworkBenchCases(std::vector<KernelCase>& cases, bool halves)
 {
-    for (const NetworkCase& c : networks()) {
-        cases.push_back(
-            {c.name + " forward", [c](Context& context, const BenchOptions& o, const Ceilings&) {
-                 return measureForward(context, c, o);
-             }});
-        if (halves)
-            cases.push_back({c.name + " forward, fp16 storage",
-                             [c](Context& context, const BenchOptions& o, const Ceilings&) {
-                                 return measureHalves(context, c, o);
+    for (const NetworkCase& network : networks()) {
+        const auto add = [&](const std::string& what, auto measure) {
+            cases.push_back({network.name + what,
+                             [=](Context& context, const BenchOptions& o, Ceilings& ceilings) {
+                                 return measure(context, network, o, ceilings);
                              }});
-        cases.push_back({c.name + " training step",
-                         [c](Context& context, const BenchOptions& o, const Ceilings&) {
-                             return measureStep(context, c, o);
-                         }});
+        };
+        add(" forward", measureForward);
+        if (halves)
+            add(" forward, fp16 storage", measureHalves);
+        add(" training step", measureStep);
     }
 }
 

@@ -14,8 +14,6 @@ namespace strandlight::cli {
 
 namespace {
 
-constexpr std::uint32_t kRuns = 9;
-
 // Series that plain summation gets wrong in one way or another.
 std::vector<std::vector<float>> stressSeries(std::uint32_t count)
 {
@@ -30,17 +28,18 @@ std::vector<std::vector<float>> stressSeries(std::uint32_t count)
 }
 
 // Error relative to the sum of magnitudes, the largest of all series; the time of the last.
-KernelMeasurement measureSum(Context& context, const BenchOptions& o, const Ceilings&)
+KernelMeasurement measureSum(Context& context, const BenchOptions& o, Ceilings& ceilings)
 {
     const std::uint32_t count = o.quick ? 100'000 : 10'000'000;
     KernelMeasurement m;
     m.tolerance = 1e-6;
+    m.bytes = 4.0 * count;
     for (const std::vector<float>& values : stressSeries(count)) {
         RenderGraph graph(context);
         const BufferId sum =
             addSumPass(graph, "sum", graph.uploadBuffer("values", std::span(values)), count);
         graph.output(sum);
-        m.timing = timeGraph(graph, o.quick ? 2 : kRuns);
+        timeBeside(m, ceilings, graph, {}, roundsOf(o));
         const std::vector<double> exact(values.begin(), values.end());
         double magnitudes = 0.0;
         for (const double v : exact)
@@ -48,11 +47,10 @@ KernelMeasurement measureSum(Context& context, const BenchOptions& o, const Ceil
         const double error = graph.read<float>(sum)[0] - reference::sum<double>(exact);
         m.error = std::max(m.error, std::abs(error) / magnitudes);
     }
-    m.bytes = 4.0 * count;
     return m;
 }
 
-KernelMeasurement measureLoss(Context& context, const BenchOptions& o, const Ceilings&)
+KernelMeasurement measureLoss(Context& context, const BenchOptions& o, Ceilings& ceilings)
 {
     const TensorDesc desc{1, 3, o.quick ? 96u : 384u, o.quick ? 160u : 640u};
     std::vector<float> prediction = randomValues(desc.elements(), 11);
@@ -67,8 +65,8 @@ KernelMeasurement measureLoss(Context& context, const BenchOptions& o, const Cei
     graph.output(loss.value);
     graph.output(loss.gradient.buffer);
     KernelMeasurement m;
-    m.timing = timeGraph(graph, o.quick ? 2 : kRuns);
     m.bytes = 3.0 * double(desc.bytes());
+    timeBeside(m, ceilings, graph, {}, roundsOf(o));
     std::vector<double> gradient(desc.elements(), 0.0);
     const std::vector<double> p(prediction.begin(), prediction.end()),
         t(target.begin(), target.end());
@@ -80,9 +78,9 @@ KernelMeasurement measureLoss(Context& context, const BenchOptions& o, const Cei
 }
 
 // The same first step again and again, here and in the twin.
-KernelMeasurement measureAdam(Context& context, const BenchOptions& o, const Ceilings&)
+KernelMeasurement measureAdam(Context& context, const BenchOptions& o, Ceilings& ceilings)
 {
-    const std::uint32_t count = o.quick ? 1u << 14 : 1u << 20, runs = o.quick ? 2 : kRuns;
+    const std::uint32_t count = o.quick ? 1u << 14 : 1u << 20, rounds = roundsOf(o);
     ParameterLayout layout;
     layout.add("all", {count}, 100);
     Parameters parameters(context, layout, 1);
@@ -97,12 +95,12 @@ KernelMeasurement measureAdam(Context& context, const BenchOptions& o, const Cei
     const AdamSettings settings;
     addAdamPass(graph, ids, settings, 1);
     KernelMeasurement m;
-    m.timing = timeGraph(graph, runs);
     m.bytes = 10.0 * count * 4.0; // copied, checked, read; parameters and moments read and written
+    timeBeside(m, ceilings, graph, {}, rounds);
     std::vector<double> wanted(start.begin(), start.end()), moment1(count, 0.0),
         moment2(count, 0.0);
     const std::vector<double> g(gradient.begin(), gradient.end());
-    for (std::uint32_t i = 0; i < 1 + runs; ++i)
+    for (std::uint32_t i = 0; i < 1 + rounds; ++i)
         reference::adamStep<double>(settings, 1, g, wanted, moment1, moment2);
     const std::vector<float> got = parameters.download();
     m.error = normError({got.begin(), got.end()}, wanted);

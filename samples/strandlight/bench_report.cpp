@@ -101,17 +101,33 @@ Timing timingOf(std::vector<double> milliseconds)
     return {median, milliseconds.front(), std::uint32_t(milliseconds.size())};
 }
 
+RoundTimings::RoundTimings(std::span<RenderGraph* const> graphs, std::uint32_t rounds)
+    : milliseconds_(graphs.size())
+{
+    for (RenderGraph* graph : graphs) {
+        graph->setTimings(Timings::Whole);
+        graph->execute();
+    }
+    for (std::uint32_t i = 0; i < rounds; ++i)
+        for (std::size_t g = 0; g < graphs.size(); ++g) {
+            throwIfInterrupted();
+            graphs[g]->execute();
+            milliseconds_[g].push_back(graphs[g]->timings().front().milliseconds);
+        }
+}
+
+double RoundTimings::ratio(std::size_t a, std::size_t b) const
+{
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < milliseconds_[a].size(); ++i)
+        ratios.push_back(milliseconds_[a][i] / milliseconds_[b][i]);
+    return timingOf(std::move(ratios)).median;
+}
+
 Timing timeGraph(RenderGraph& graph, std::uint32_t runs)
 {
-    graph.setTimings(Timings::Whole);
-    graph.execute();
-    std::vector<double> milliseconds;
-    for (std::uint32_t i = 0; i < runs; ++i) {
-        throwIfInterrupted();
-        graph.execute();
-        milliseconds.push_back(graph.timings().front().milliseconds);
-    }
-    return timingOf(std::move(milliseconds));
+    RenderGraph* const alone = &graph;
+    return RoundTimings({&alone, 1}, runs).of(0);
 }
 
 std::vector<PassTiming> timePasses(RenderGraph& graph, std::uint32_t runs)

@@ -10,7 +10,6 @@ namespace strandlight::cli {
 
 namespace {
 
-constexpr std::uint32_t kRuns = 9;
 // Of one (texel, direction, lobe) besides the exponential: chord 3, its square 5, times falloff 1;
 // then amplitudes 6 forward, and backward weighted gradient 3, with amplitude 5, d amplitude 3, d
 // sharpness 3, d axis 6.
@@ -62,7 +61,7 @@ struct Comparison
     }
 };
 
-KernelMeasurement measureMixture(Context& context, const BenchOptions& o, const Ceilings& ceilings)
+KernelMeasurement measureMixture(Context& context, const BenchOptions& o, Ceilings& ceilings)
 {
     const SgMixtureDesc desc{
         .images = o.quick ? 64u : 64u * 64u, .lobes = 8, .directions = 16 * 16};
@@ -83,10 +82,10 @@ KernelMeasurement measureMixture(Context& context, const BenchOptions& o, const 
     graph.output(dRaw.buffer);
 
     KernelMeasurement m;
-    m.timing = timeGraph(graph, o.quick ? 2 : kRuns);
     const double evaluations = double(desc.images) * desc.directions * desc.lobes;
-    m.flops = evaluations * (kForwardFlops + kBackwardFlops + 2.0 * ceilings.flopsOfExp());
-    m.more["exp_counted_as_flops"] = ceilings.flopsOfExp();
+    m.flops = evaluations * (kForwardFlops + kBackwardFlops + 2.0 * ceilings.flopsOfExp);
+    m.more["exp_counted_as_flops"] = ceilings.flopsOfExp;
+    timeBeside(m, ceilings, graph, {}, roundsOf(o));
     const auto gotRadiance = graph.read<float>(radiance.buffer),
                gotDRaw = graph.read<float>(dRaw.buffer);
     Comparison comparison;
