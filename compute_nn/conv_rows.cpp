@@ -46,6 +46,31 @@ bool hasQuads(const ConvPass& conv, const RowTile& tile, const TensorId& source,
            (!conv.backward.activated || wholeQuads(*conv.backward.activated));
 }
 
+// Every store of eight neighbours is one of the result's aligned octets; for devices whose forms
+// are a CPU's (conv_rows.glsl).
+bool hasOctets(const RenderGraph& graph, const ConvPass& conv, const RowTile& tile,
+               const TensorId& result)
+{
+    const std::uint32_t stored = tile.columns * (conv.transposed ? conv.stride.w : 1);
+    const gpu::TensorView view = result.view();
+    return graph.context().cpuForms() && result.element == Element::Float &&
+           !conv.backward.accumulate && stored % 8 == 0 && view.offset % 8 == 0 &&
+           view.imageStride % 8 == 0 && view.width % 8 == 0;
+}
+
+// The kernel for these tensors' elements; `octets`: of floats, stored by eights.
+const KernelBlob& kernelFor(const ConvPass& conv, const TensorId& source, const TensorId& result,
+                            bool octets)
+{
+    if (octets && source.element == Element::Float)
+        return conv.transposed ? kernels::conv_transpose_rows_wide : kernels::conv_rows_wide;
+    return conv.transposed ? variantFor(source, result, kernels::conv_transpose_rows,
+                                        kernels::conv_transpose_rows_half,
+                                        kernels::conv_transpose_rows_from_half)
+                           : variantFor(source, result, kernels::conv_rows, kernels::conv_rows_half,
+                                        kernels::conv_rows_from_half);
+}
+
 // Weights in the order in which the kernel deals them out; a dispatch of the same pass.
 BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
                      const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
@@ -112,11 +137,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
         plan.phases,
         epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0)};
     const KernelBlob& kernel =
-        conv.transposed
-            ? variantFor(source, result, kernels::conv_transpose_rows,
-                         kernels::conv_transpose_rows_half, kernels::conv_transpose_rows_from_half)
-            : variantFor(source, result, kernels::conv_rows, kernels::conv_rows_half,
-                         kernels::conv_rows_from_half);
+        kernelFor(conv, source, result, quads && hasOctets(graph, conv, tile, result));
     // Without quads nothing reads these two, and the tensors may not be whole texels.
     const Binding fromQuads = quads ? from : packed;
     const Binding savedQuads = quads ? epilogue.saved : packed;

@@ -124,14 +124,19 @@ void createDevice(VulkanState& state, const ContextSettings& settings)
         state.properties.limits.maxTexelBufferElements = std::uint32_t(settings.bindingBytes / 4);
     }
     state.subgroupSize = settings.subgroups ? v11.subgroupSize : 1;
-    state.cpuForms = state.deviceInfo.type == "cpu" && !settings.gpuForms;
+    VkPhysicalDeviceFeatures has;
+    vkGetPhysicalDeviceFeatures(state.physical, &has);
+    // A CPU's forms store 64-bit values.
+    state.cpuForms =
+        state.deviceInfo.type == "cpu" && has.shaderInt64 == VK_TRUE && !settings.gpuForms;
 
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queue.queueFamilyIndex = state.queueFamily;
     queue.queueCount = 1;
     queue.pQueuePriorities = &priority;
-    const DeviceFeatures features(state.deviceInfo.missingForHalves.empty());
+    DeviceFeatures features(state.deviceInfo.missingForHalves.empty());
+    features.core.features.shaderInt64 = state.cpuForms;
     const char* const extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.core};
     info.queueCreateInfoCount = 1;

@@ -6,6 +6,7 @@
 // (With the taps outermost the sums travel to the stack and back at every tap.)
 // VARIANT half SOURCE_HALF RESULT_HALF
 // VARIANT from_half SOURCE_HALF
+// VARIANT wide RESULT_WIDE
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -53,6 +54,12 @@ void main()
     uint firstChannel = groupOfInvocation() * K;
     [[unroll]] for (uint k = 0; k < K; ++k) {
         float bias = biasOf(firstChannel + k);
+#ifdef RESULT_WIDE
+        [[unroll]] for (uint n = 0; n < NX; n += 8)
+            storeOctet(target, firstChannel + k, strip.row, strip.column + n,
+                       vec4(sum[k][n], sum[k][n + 1], sum[k][n + 2], sum[k][n + 3]) + bias,
+                       vec4(sum[k][n + 4], sum[k][n + 5], sum[k][n + 6], sum[k][n + 7]) + bias);
+#else
         if ((FLAGS & kConvQuads) != 0) {
             [[unroll]] for (uint n = 0; n < NX; n += 4)
                 storeQuad(target, firstChannel + k, strip.row, strip.column + n,
@@ -61,6 +68,7 @@ void main()
             [[unroll]] for (uint n = 0; n < NX; ++n)
                 storeFloat(target, firstChannel + k, strip.row, strip.column + n, sum[k][n] + bias);
         }
+#endif
     }
     reportLargest();
 }

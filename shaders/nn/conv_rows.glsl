@@ -7,9 +7,13 @@
 // active tiles instead.
 //
 // Under kConvQuads rows are whole texels of four floats, of which one load costs a CPU device little more than one float.
+// With RESULT_WIDE eight floats are stored at once (wide_store.glsl); those variants do not accumulate.
 #ifndef STRANDLIGHT_NN_CONV_ROWS_GLSL
 #define STRANDLIGHT_NN_CONV_ROWS_GLSL
 
+#ifdef RESULT_WIDE
+#include "nn/wide_store.glsl"
+#endif
 #define GUARD_BINDING 9
 #include "nn/elements.glsl"
 #include "shared/nn_types.h"
@@ -36,7 +40,11 @@ layout(binding = 4, SOURCE_TEXEL) uniform readonly imageBuffer saved;    // kCon
 layout(binding = 5, SOURCE_QUAD) uniform readonly imageBuffer savedQuads;
 layout(binding = 6, r32ui) uniform readonly uimageBuffer tiles; // kConvTiles: x | y << 16 of each active tile
 layout(binding = 7, scalar) buffer Result { RESULT_ELEMENT result[]; };  // [N,K',H',W']
+#ifdef RESULT_WIDE
+layout(binding = 8, scalar) writeonly buffer ResultOctets { u64vec4 resultOctets[]; };
+#else
 layout(binding = 8, scalar) buffer ResultQuads { RESULT_QUAD resultQuads[]; };
+#endif
 layout(push_constant, scalar) uniform Push { ConvRowsPush push; };
 
 const uint kLanes = 8; // lanes that share a weight load
@@ -139,6 +147,26 @@ void storeFloat(Target to, uint channel, uint y, uint x, float value)
     result[to.first + inImage] = RESULT_ELEMENT(guarded(sign > 0.0 ? value : value * to.slope));
 }
 
+// Of four neighbouring values, the first at `inImage`.
+vec4 activated(Target to, uint inImage, vec4 value)
+{
+    vec4 sign = value;
+    if ((FLAGS & kConvDerivative) != 0)
+        sign = imageLoad(savedQuads, int((to.firstSaved + inImage) / 4));
+    return mix(value * to.slope, value, greaterThan(sign, vec4(0.0)));
+}
+
+#ifdef RESULT_WIDE
+// Eight columns from x on, of which all exist or none.
+void storeOctet(Target to, uint channel, uint y, uint x, vec4 left, vec4 right)
+{
+    if (!to.live || channel >= to.channels || y >= to.height || x >= to.width)
+        return;
+    uint inImage = channel * to.plane + y * to.width + x;
+    resultOctets[(to.first + inImage) / 8] =
+        asPairs(activated(to, inImage, left), activated(to, inImage + 4, right));
+}
+#else
 // Four columns from x on, of which all exist or none.
 void storeQuad(Target to, uint channel, uint y, uint x, vec4 value)
 {
@@ -147,11 +175,8 @@ void storeQuad(Target to, uint channel, uint y, uint x, vec4 value)
     uint inImage = channel * to.plane + y * to.width + x;
     if ((FLAGS & kConvAccumulate) != 0)
         value += vec4(resultQuads[(to.first + inImage) / 4]);
-    vec4 sign = value;
-    if ((FLAGS & kConvDerivative) != 0)
-        sign = imageLoad(savedQuads, int((to.firstSaved + inImage) / 4));
-    vec4 activated = mix(value * to.slope, value, greaterThan(sign, vec4(0.0)));
-    resultQuads[(to.first + inImage) / 4] = RESULT_QUAD(guarded(activated));
+    resultQuads[(to.first + inImage) / 4] = RESULT_QUAD(guarded(activated(to, inImage, value)));
 }
+#endif
 
 #endif

@@ -7,6 +7,7 @@
 // where PHASES is SH, one of them: fewer sums for as many taps each. Otherwise as conv_rows.comp.
 // VARIANT half SOURCE_HALF RESULT_HALF
 // VARIANT from_half SOURCE_HALF
+// VARIANT wide RESULT_WIDE
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -72,6 +73,12 @@ void main()
     [[unroll]] for (uint k = 0; k < K; ++k) {
         float bias = biasOf(firstChannel + k);
         [[unroll]] for (uint y = 0; y < ROWS; ++y) {
+#ifdef RESULT_WIDE
+            [[unroll]] for (uint x = 0; x < NX * SW; x += 8)
+                storeOctet(target, firstChannel + k, firstY + y, firstX + x,
+                           vec4(sum[k][y][x], sum[k][y][x + 1], sum[k][y][x + 2], sum[k][y][x + 3]) + bias,
+                           vec4(sum[k][y][x + 4], sum[k][y][x + 5], sum[k][y][x + 6], sum[k][y][x + 7]) + bias);
+#else
             if ((FLAGS & kConvQuads) != 0) {
                 [[unroll]] for (uint x = 0; x < NX * SW; x += 4)
                     storeQuad(target, firstChannel + k, firstY + y, firstX + x,
@@ -80,6 +87,7 @@ void main()
                 [[unroll]] for (uint x = 0; x < NX * SW; ++x)
                     storeFloat(target, firstChannel + k, firstY + y, firstX + x, sum[k][y][x] + bias);
             }
+#endif
         }
     }
     reportLargest();

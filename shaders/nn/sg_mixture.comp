@@ -1,23 +1,33 @@
 // radiance[n,d] = sum over lobes of amplitude exp(-sharpness/2 |d - axis|^2).
 // A lane is an image: its lobes stay with it, directions come by, nothing crosses lanes. Four directions at once make the
-// stores whole vectors, which a CPU device writes four times faster than single floats.
+// stores whole vectors, which a CPU device writes four times faster than single floats; with RESULT_WIDE eight come by,
+// stored at once (wide_store.glsl).
+// VARIANT wide RESULT_WIDE
 // Wang et al. All-Frequency Rendering of Dynamic, Spatially-Varying Reflectance. 2009
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#ifdef RESULT_WIDE
+#include "nn/wide_store.glsl"
+#endif
+
 #include "nn/sg_lobe.glsl"
 
 layout(local_size_x = 8) in;
 layout(constant_id = 0) const uint LOBES = 1;  // of one block, in registers
 layout(constant_id = 1) const uint BLOCKS = 1; // of an image
-layout(constant_id = 2) const uint TILE = 1;   // 4: planar radiance, directions a multiple of four; else 1
+layout(constant_id = 2) const uint TILE = 1;   // 4, wide 8: planar radiance, directions a multiple of that; else 1
 layout(binding = 0, r32f) uniform readonly imageBuffer lobes;      // [N,L,7] decoded
 layout(binding = 1, r32f) uniform readonly imageBuffer directions; // [N,D,3] or [D,3], unit
 layout(binding = 2, rgba32f) uniform readonly imageBuffer directionQuads;
 layout(binding = 3, scalar) writeonly buffer Radiance { float radiance[]; };
+#ifdef RESULT_WIDE
+layout(binding = 4, scalar) writeonly buffer RadianceOctets { u64vec4 radianceOctets[]; };
+#else
 layout(binding = 4, scalar) writeonly buffer RadianceQuads { vec4 radianceQuads[]; };
+#endif
 layout(push_constant, scalar) uniform Push { SgMixturePush push; };
 
 #include "nn/sg_directions.glsl"
@@ -41,11 +51,17 @@ void store(uint n, uint first)
 {
     uint to = n * 3 * push.directions + first * push.directionStride;
     [[unroll]] for (uint c = 0; c < 3; ++c) {
+#ifdef RESULT_WIDE
+        radianceOctets[(to + c * push.channelStride) / 8] =
+            asPairs(vec4(sum[0][c], sum[1 % TILE][c], sum[2 % TILE][c], sum[3 % TILE][c]),
+                    vec4(sum[4 % TILE][c], sum[5 % TILE][c], sum[6 % TILE][c], sum[7 % TILE][c]));
+#else
         if (TILE == 4)
             radianceQuads[(to + c * push.channelStride) / 4] =
                 vec4(sum[0][c], sum[1 % TILE][c], sum[2 % TILE][c], sum[3 % TILE][c]);
         else
             radiance[to + c * push.channelStride] = sum[0][c];
+#endif
     }
 }
 
