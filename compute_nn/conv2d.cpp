@@ -22,24 +22,29 @@ void checkShapes(std::string_view name, const Conv2dDesc& desc, const TensorDesc
 
 } // namespace
 
+ConvPass forwardPass(const Conv2dDesc& desc, bool bias, const Activation& activation,
+                     const TileList* tiles, HalfGuard* guard)
+{
+    const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
+    return {.kernel = desc.kernel,
+            .stride = desc.stride,
+            .padding = desc.padding,
+            .weightStrideOut = desc.in * taps,
+            .weightStrideIn = taps,
+            .slope = fusedSlope(activation),
+            .bias = bias,
+            .backward = {},
+            .tiles = tiles,
+            .guard = guard};
+}
+
 TensorId conv2dForward(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,
                        const TensorId& x, const LayerWeights& weights, const TensorId& y,
                        const Activation& activation, const TileList* tiles, HalfGuard* guard)
 {
     checkShapes(name, desc, x.desc, y.desc);
-    const std::uint32_t taps = desc.kernel.h * desc.kernel.w;
-    return addConvPass(graph, name,
-                       {.kernel = desc.kernel,
-                        .stride = desc.stride,
-                        .padding = desc.padding,
-                        .weightStrideOut = desc.in * taps,
-                        .weightStrideIn = taps,
-                        .slope = fusedSlope(activation),
-                        .bias = weights.hasBias,
-                        .backward = {},
-                        .tiles = tiles,
-                        .guard = guard},
-                       x, weights, y);
+    return addConvPass(graph, name, forwardPass(desc, weights.hasBias, activation, tiles, guard), x,
+                       weights, y);
 }
 
 TensorId conv2dBackwardInput(RenderGraph& graph, std::string_view name, const Conv2dDesc& desc,

@@ -8,6 +8,10 @@
 
 namespace strandlight {
 
+// The forward pass of a layer, for addConvPass: of all its input channels, or of a range of them.
+ConvPass forwardPass(const Conv2dDesc& desc, bool bias, const Activation& activation = {},
+                     const TileList* tiles = nullptr, HalfGuard* guard = nullptr);
+
 // x [N,I,H,W], weight [O,I,Kh,Kw], bias [O] -> y [N,O,Oh,Ow] = activation(conv(x) + bias),
 // overwritten; with tiles (N = 1) only in those. Of the activations, None, Relu and LeakyRelu can
 // be fused. Throws Error when shapes do not fit.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "compute_nn/conv_row_plan.hpp"
 #include "compute_nn/conv_work.hpp"
 #include "compute_nn/tile_list.hpp"
 #include "engine/base/assert.hpp"
@@ -13,28 +14,6 @@ namespace strandlight {
 namespace {
 
 constexpr std::uint32_t kGroup = 64; // strips of a workgroup
-
-// How a layer is cut: into groups, that is blocks of output channels x row phases, and strips.
-struct RowPlan
-{
-    Extent2 scale; // pixels of the result per row and column of the grid
-    std::uint32_t turn, turns, blocks, channels, phases, taps, strips;
-    std::uint64_t groupWork; // multiply-adds of one strip
-
-    RowPlan(const ConvPass& conv, const RowTile& tile, const TensorDesc& source,
-            const TensorDesc& result)
-        : scale(conv.transposed ? conv.stride : Extent2{1, 1}), turn(unroll(source.c, tile.turn)),
-          turns(source.c / turn), blocks(divideUp(result.c, tile.channels)),
-          channels(divideUp(result.c, blocks)), phases(tile.splitRows ? scale.h : 1),
-          taps(conv.kernel.h * conv.kernel.w / phases),
-          strips(result.n * divideUp(result.h, scale.h) *
-                 divideUp(divideUp(result.w, scale.w), tile.columns)),
-          groupWork(std::uint64_t(taps) * source.c * channels * tile.columns)
-    {
-    }
-    std::uint32_t groups() const { return blocks * phases; }
-    std::uint32_t turnTexels() const { return divideUp(turn * channels * taps, 4); }
-};
 
 // Every load and store of four neighbours is one texel of each tensor.
 bool hasQuads(const ConvPass& conv, const RowTile& tile, const TensorId& source,
@@ -69,30 +48,6 @@ const KernelBlob& kernelFor(const ConvPass& conv, const TensorId& source, const 
                                         kernels::conv_transpose_rows_from_half)
                            : variantFor(source, result, kernels::conv_rows, kernels::conv_rows_half,
                                         kernels::conv_rows_from_half);
-}
-
-// Weights in the order in which the kernel deals them out; a dispatch of the same pass.
-BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
-                     const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
-                     BufferId parameters, std::uint32_t outChannels)
-{
-    const gpu::ConvPackPush push{.texels = plan.groups() * plan.turns * plan.turnTexels(),
-                                 .weightOffset = weights.weightOffset,
-                                 .weightStrideOut = conv.weightStrideOut,
-                                 .weightStrideIn = conv.weightStrideIn,
-                                 .outChannels = outChannels,
-                                 .channels = plan.channels,
-                                 .turns = plan.turns,
-                                 .turnInputs = plan.turn,
-                                 .turnTexels = plan.turnTexels(),
-                                 .taps = plan.taps,
-                                 .phases = plan.phases,
-                                 .kernelWidth = conv.kernel.w,
-                                 .paddingHeight = conv.padding.h};
-    const BufferId packed = pass.write(
-        graph.createBuffer(std::string(name) + " weights", std::uint64_t(push.texels) * 16));
-    pass.dispatch(kernels::conv_pack, {push.texels, 1, 1}, push, {parameters, packed});
-    return packed;
 }
 
 } // namespace

@@ -62,6 +62,26 @@ TensorId levelOfInput(RenderGraph& graph, const UNetDesc& net, const TensorId& x
     return level;
 }
 
+// From enc`first` down, and all the way up again.
+void addInnerLayers(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
+                    std::vector<TensorId>& f, std::uint32_t first, const UNetTiles* tiles,
+                    HalfGuard* halves)
+{
+    const Activation leaky = Activation::leakyRelu(net.slope);
+    for (std::uint32_t l = first; l <= net.levels(); ++l) {
+        const std::string name = layerName("enc", l);
+        written(f[l], conv2dForward(graph, name, net.encoder(l), skipOf(net, f, l - 1),
+                                    parameters.weights(name), skipOf(net, f, l), leaky,
+                                    tiles ? &tiles->skip[l] : nullptr, halves));
+    }
+    for (std::uint32_t l = net.levels(); l-- > 0;) {
+        const std::string name = layerName("dec", l);
+        written(f[l], convTranspose2dForward(graph, name, net.decoder(l), f[l + 1],
+                                             parameters.weights(name), upOf(net, f, l), leaky,
+                                             tiles ? &tiles->up[l] : nullptr, halves));
+    }
+}
+
 } // namespace
 
 TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDesc& x,
@@ -92,28 +112,51 @@ UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterI
                                             : createLevel(graph, layerName("level ", l),
                                                           net.level(l, x.desc), element));
 
-    // Down.
     if (net.head > 0)
         written(f[0],
                 conv2dForward(graph, "enc0", net.encoder(0), x, parameters.weights("enc0"),
                               skipOf(net, f, 0), leaky, tiles ? &tiles->skip[0] : nullptr, halves));
-    for (std::uint32_t l = 1; l <= net.levels(); ++l) {
-        const std::string name = layerName("enc", l);
-        written(f[l], conv2dForward(graph, name, net.encoder(l), skipOf(net, f, l - 1),
-                                    parameters.weights(name), skipOf(net, f, l), leaky,
-                                    tiles ? &tiles->skip[l] : nullptr, halves));
-    }
-    // Up.
-    for (std::uint32_t l = net.levels(); l-- > 0;) {
-        const std::string name = layerName("dec", l);
-        written(f[l], convTranspose2dForward(graph, name, net.decoder(l), f[l + 1],
-                                             parameters.weights(name), upOf(net, f, l), leaky,
-                                             tiles ? &tiles->up[l] : nullptr, halves));
-    }
+    addInnerLayers(graph, net, parameters, f, 1, tiles, halves);
     v.y = createTensor(graph, "y", net.last().output(f[0].desc));
     v.y = conv2dForward(graph, "out", net.last(), f[0], parameters.weights("out"), v.y, {},
                         tiles ? &tiles->y : nullptr);
     return v;
+}
+
+TensorId unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
+                     const UNetFetch& input, const UNetTiles* tiles, HalfGuard* halves)
+{
+    net.check(input.x);
+    const Element element = halves ? Element::Half : Element::Float;
+    std::vector<TensorId> f;
+    for (std::uint32_t l = 0; l <= net.levels(); ++l) {
+        TensorDesc desc = net.level(l, input.x);
+        if (l == 0 && net.head == 0) // its skip is not stored
+            desc.c = net.upChannels(0);
+        f.push_back(createLevel(graph, layerName("level ", l), desc, element));
+    }
+    const std::uint32_t first = net.head > 0 ? 0 : 1;
+    const std::string name = layerName("enc", first);
+    written(f[first],
+            input.convolve(name,
+                           forwardPass(net.encoder(first), parameters.weights(name).hasBias,
+                                       Activation::leakyRelu(net.slope),
+                                       tiles ? &tiles->skip[first] : nullptr, halves),
+                           false, parameters.weights(name), skipOf(net, f, first)));
+    addInnerLayers(graph, net, parameters, f, first + 1, tiles, halves);
+
+    const TensorDesc whole = net.level(0, input.x);
+    const TensorId y = createTensor(graph, "y", net.last().output(whole));
+    const TileList* list = tiles ? &tiles->y : nullptr;
+    LayerWeights weights = parameters.weights("out");
+    if (net.head > 0)
+        return conv2dForward(graph, "out", net.last(), f[0], weights, y, {}, list);
+    // The channels of `up` first, as in the whole layer: sums in the same order.
+    const TensorId up =
+        addConvPass(graph, "out up", forwardPass(net.last(), false, {}, list), f[0], weights, y);
+    weights.weightOffset += net.upChannels(0) * net.last().kernel.h * net.last().kernel.w;
+    return input.convolve("out", forwardPass(net.last(), weights.hasBias, {}, list), true, weights,
+                          up);
 }
 
 void unetBackward(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,

@@ -3,6 +3,8 @@
 // Currius, Assarsson, Sintorn. Real-Time Hair Filtering with Convolutional Neural Networks. 2022
 #pragma once
 
+#include <functional>
+#include <string_view>
 #include <vector>
 
 #include "compute_nn/adam_settings.hpp"
@@ -36,6 +38,21 @@ TensorId createUNetInput(RenderGraph& graph, const UNetDesc& net, const TensorDe
 UNetValues unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
                        const TensorId& x, const UNetTiles* tiles = nullptr,
                        HalfGuard* halves = nullptr);
+
+// An input that no tensor holds: the layers that read it fetch it themselves.
+struct UNetFetch
+{
+    TensorDesc x; // [1,in,H,W]
+    // addConvPass with x as its source. `continued`: sums begin with what y [1,O,Oh,Ow] holds.
+    std::function<TensorId(std::string_view name, const ConvPass& conv, bool continued,
+                           const LayerWeights& weights, const TensorId& y)>
+        convolve;
+};
+
+// x -> y [1,out,H,W] with the bits of a tensor of floats as x. The rest as above.
+TensorId unetForward(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
+                     const UNetFetch& x, const UNetTiles* tiles = nullptr,
+                     HalfGuard* halves = nullptr);
 
 // dY [N,out,H,W] -> accumulates into the parameters' gradients. x gets none.
 void unetBackward(RenderGraph& graph, const UNetDesc& net, ParameterIds& parameters,

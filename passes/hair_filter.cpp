@@ -7,6 +7,7 @@
 #include "compute_nn/unet.hpp"
 #include "engine/base/error.hpp"
 #include "kernels/hair.gen.hpp"
+#include "passes/hair_conv.hpp"
 
 namespace strandlight {
 namespace {
@@ -31,11 +32,14 @@ Band bandAt(std::uint32_t firstRow, std::uint32_t rows, std::uint32_t paddedHeig
 }
 
 std::uint32_t chooseBandRows(const RenderGraph& graph, const UNetDesc& net,
-                             const TensorDesc& picture, const HairFilterSettings& settings)
+                             const TensorDesc& picture, const HairFilterSettings& settings,
+                             bool fused)
 {
     if (settings.bandRows > 0)
         return (settings.bandRows + 7) / 8 * 8;
-    const std::uint64_t rowBytes = std::uint64_t(picture.w) * net.channels(0) * sizeof(float);
+    const std::uint32_t planes =
+        fused && net.head == 0 ? std::max(net.upChannels(0), net.out) : net.channels(0);
+    const std::uint64_t rowBytes = std::uint64_t(picture.w) * planes * sizeof(float);
     const auto most = std::uint32_t(graph.context().maxStorageBufferBytes() / rowBytes / 8 * 8);
     if (most < 3 * kMarginRows)
         throw Error("hair filter: a picture of " + std::to_string(picture.w) +
@@ -58,6 +62,20 @@ TouchedBlocks addTouchedPass(RenderGraph& graph, ImageId blended)
     pass.dispatch(kernels::hair_touched, {touched.across, touched.down, 1}, push,
                   {blended, touched.buffer});
     return touched;
+}
+
+// The network over rows [firstRow, firstRow + x.h) of the picture.
+TensorId addNetwork(RenderGraph& graph, const UNetDesc& net, const ParameterIds& parameters,
+                    const HairFilterInput& input, const TensorDesc& x, std::uint32_t firstRow,
+                    const UNetTiles* tiles, HalfGuard* halves, bool fused)
+{
+    if (fused)
+        return unetForward(graph, net, parameters, hairFetch(graph, input, x, firstRow), tiles,
+                           halves);
+    const TensorId to = createUNetInput(graph, net, x, halves ? Element::Half : Element::Float);
+    const TensorId planes = addHairInputPass(graph, input.samples, input.blended, input.depth, to,
+                                             firstRow, tiles ? &tiles->input : nullptr);
+    return unetForward(graph, net, parameters, planes, tiles, halves).y;
 }
 
 void addCompositePass(RenderGraph& graph, const HairFilterInput& input, const TensorId& y,
@@ -93,8 +111,8 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
                     std::to_string(gpu::kHairOutputs) + " with at most 3");
     const glm::uvec3 size = graph.extent(input.blended);
     const TensorDesc picture = hairInputDesc(size.x, size.y);
-    const std::uint32_t rows = chooseBandRows(graph, net, picture, settings);
-    const Element element = settings.halves ? Element::Half : Element::Float;
+    const bool fused = settings.fuseFetch.value_or(hairFetchPays(graph.context()));
+    const std::uint32_t rows = chooseBandRows(graph, net, picture, settings, fused);
     HairComposite result = over;
     TouchedBlocks touched;
     if (settings.skipTiles)
@@ -109,12 +127,9 @@ HairComposite addHairFilterPasses(RenderGraph& graph, const UNetDesc& net,
             const std::vector<LayerTiles> layers = layerTiles(net, desc, *tiles);
             result.tiles.insert(result.tiles.end(), layers.begin(), layers.end());
         }
-        const TensorId x = addHairInputPass(graph, input.samples, input.blended, input.depth,
-                                            createUNetInput(graph, net, desc, element),
-                                            band.rows.tensorRow, tiles ? &tiles->input : nullptr);
-        const UNetValues values =
-            unetForward(graph, net, parameters, x, tiles ? &*tiles : nullptr, settings.halves);
-        addCompositePass(graph, input, values.y, band.rows, tiles ? &tiles->y : nullptr, result);
+        const TensorId y = addNetwork(graph, net, parameters, input, desc, band.rows.tensorRow,
+                                      tiles ? &*tiles : nullptr, settings.halves, fused);
+        addCompositePass(graph, input, y, band.rows, tiles ? &tiles->y : nullptr, result);
     }
     return result;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compute_nn/half_guard.hpp"
@@ -28,6 +29,9 @@ struct HairFilterSettings
     std::uint32_t bandRows = 0;
     // Compute only what pixels with hair need, in every layer. Changes no bit either.
     bool skipTiles = true;
+    // The layers that read the network's input fetch it from the samples (hair_conv.hpp): less
+    // memory, the same bits; as halves the input is then not rounded. None: where it pays.
+    std::optional<bool> fuseFetch;
     // Not null: the network's input and levels are stored as halves (--precision fp16).
     HalfGuard* halves = nullptr;
 };

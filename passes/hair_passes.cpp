@@ -213,8 +213,8 @@ TensorId addHairInputPass(RenderGraph& graph, const HairSampleIds& samples, Imag
     pass.sample(samples.shape);
     pass.read(blended);
     const BufferId planes = pass.write(x.buffer);
-    const gpu::HairInputPush push{x.view(), firstRow,     extent.x,
-                                  extent.y, depth.offset, depth.scale};
+    const gpu::HairInputPush push{x.view(),
+                                  {firstRow, extent.x, extent.y, depth.offset, depth.scale}};
     const Binding features(samples.features, Filter::Nearest);
     const Binding shape(samples.shape, Filter::Nearest);
     if (tiles) {

@@ -189,7 +189,9 @@ public:
             guard.emplace(graph);
         const HairComposite done = addHairFilterPasses(
             graph, settings_.network->net, weights, {blended.samples, blended.image, depth_}, over,
-            {.skipTiles = settings_.skipTiles, .halves = guard ? &*guard : nullptr});
+            {.skipTiles = settings_.skipTiles,
+             .fuseFetch = settings_.fuseFetch,
+             .halves = guard ? &*guard : nullptr});
         if (guard)
             guard->output(graph);
         graph.output(blended.image);

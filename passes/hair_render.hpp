@@ -62,6 +62,7 @@ struct HairRenderSettings
     HairNetwork* network = nullptr; // of HairFilter::UNet; outlives renderHair
     bool skipTiles = true;          // of that: compute only what hair needs; changes no bit
     bool halves = false;            // of that: activations stored as halves (fp16)
+    std::optional<bool> fuseFetch;  // of that: HairFilterSettings::fuseFetch
     bool exactCoverage = false;     // fill HairFrame::exactTransmittance
 
     float roughness = 0.3f;               // longitudinal, in [0.05, 1] (Chiang 2016)

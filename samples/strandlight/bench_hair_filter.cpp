@@ -1,11 +1,12 @@
-// strandlight bench hair-filter: the filter's network over pictures that hair covers in part, by
-// tiles and as a whole.
+// strandlight bench hair-filter: the filter's network over pictures that hair covers in part, as a
+// whole, by tiles, and by tiles with the input fetched by the layers that read it.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
 
 #include "engine/base/error.hpp"
+#include "engine/graph/plan.hpp"
 #include "passes/hair_filter.hpp"
 #include "samples/strandlight/bench.hpp"
 
@@ -44,13 +45,14 @@ CpuImage disc(Size size, double share)
 struct Run
 {
     Timing timing;
+    double mib = 0.0; // of the graph's transients, which share memory
     std::vector<PassTiming> passes;
     CpuImage radiance;
 };
 
 // Samples are cleared, not drawn: the filter's time does not depend on what they hold.
 Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, const CpuImage& hair,
-              bool skipTiles, std::uint32_t runs)
+              bool skipTiles, bool fuseFetch, std::uint32_t runs)
 {
     const ImageDesc desc{hair.width, hair.height, 1, Format::RGBA32F, 1};
     ImageDesc four = desc.with(Format::RGBA16F);
@@ -67,24 +69,41 @@ Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, con
     const ParameterIds weights(graph, parameters);
     addHairFilterPasses(graph, net, weights, input,
                         {graph.importImage(filtered), graph.importImage(radiance)},
-                        {.skipTiles = skipTiles});
+                        {.skipTiles = skipTiles, .fuseFetch = fuseFetch});
+    const double mib = double(graph.compile().arenaBytes) / double(1 << 20);
     const Timing timing = timeGraph(graph, runs);
     std::vector<PassTiming> passes = timePasses(graph, runs);
-    return {timing, std::move(passes), radiance.download()};
+    return {timing, mib, std::move(passes), radiance.download()};
 }
 
-// A row for every pass of the tiles; lists of them have no dense time.
-void addPassRows(BenchReport& report, const std::string& name, const Run& dense, const Run& tiles)
+// A row for every pass of any form; a form without it has no time there.
+void addPassRows(BenchReport& report, const std::string& name, const Run& dense, const Run& tiles,
+                 const Run& fused)
 {
-    for (const PassTiming& pass : tiles.passes) {
-        Json row = {{"name", name + ": " + pass.pass}, {"tiles_ms", pass.milliseconds}};
-        for (const PassTiming& same : dense.passes)
-            if (same.pass == pass.pass) {
-                row["dense_ms"] = same.milliseconds;
-                row["over_dense"] = pass.milliseconds / same.milliseconds;
-            }
+    std::vector<std::string> names;
+    for (const Run* run : {&tiles, &fused})
+        for (const PassTiming& pass : run->passes)
+            if (std::find(names.begin(), names.end(), pass.pass) == names.end())
+                names.push_back(pass.pass);
+    for (const std::string& pass : names) {
+        Json row = {{"name", name + ": " + pass}};
+        const auto add = [&](const char* column, const Run& run) {
+            for (const PassTiming& same : run.passes)
+                if (same.pass == pass)
+                    row[column] = same.milliseconds;
+        };
+        add("dense_ms", dense);
+        add("tiles_ms", tiles);
+        add("fused_ms", fused);
         report.add(row);
     }
+}
+
+void requireSameBits(const std::string& name, const char* form, const Run& run, const Run& dense)
+{
+    if (std::memcmp(dense.radiance.pixels.data(), run.radiance.pixels.data(),
+                    dense.radiance.pixels.size() * sizeof(glm::vec4)) != 0)
+        throw Error(name + ": " + form + " gives other bits than the whole picture");
 }
 
 int run(const Options& o)
@@ -102,18 +121,22 @@ int run(const Options& o)
         if (!report.wants(name))
             continue;
         const CpuImage hair = disc(size, share);
-        const Run dense = runFilter(context, net, parameters, hair, false, runs);
-        const Run tiles = runFilter(context, net, parameters, hair, true, runs);
-        if (std::memcmp(dense.radiance.pixels.data(), tiles.radiance.pixels.data(),
-                        dense.radiance.pixels.size() * sizeof(glm::vec4)) != 0)
-            throw Error(name + ": tiles give other bits than the whole picture");
+        const Run dense = runFilter(context, net, parameters, hair, false, false, runs);
+        const Run tiles = runFilter(context, net, parameters, hair, true, false, runs);
+        const Run fused = runFilter(context, net, parameters, hair, true, true, runs);
+        requireSameBits(name, "by tiles", tiles, dense);
+        requireSameBits(name, "the fused fetch", fused, dense);
         report.add({{"name", name},
                     {"dense_ms", dense.timing.median},
                     {"tiles_ms", tiles.timing.median},
                     {"over_dense", tiles.timing.median / dense.timing.median},
+                    {"tiles_mib", tiles.mib},
+                    {"fused_ms", fused.timing.median},
+                    {"fused_over_tiles", fused.timing.median / tiles.timing.median},
+                    {"fused_mib", fused.mib},
                     {"runs", runs}});
         if (o.byPass)
-            addPassRows(report, name, dense, tiles);
+            addPassRows(report, name, dense, tiles, fused);
     }
     report.finish();
     return 0;
@@ -124,7 +147,8 @@ int run(const Options& o)
 Command addBenchHairFilter(CLI::App& bench)
 {
     CLI::App* app = bench.add_subcommand(
-        "hair-filter", "The filter's network by tiles against the whole picture, same bits first");
+        "hair-filter", "The filter's network by tiles, and with its input fused, against the whole "
+                       "picture: same bits first");
     const auto o = std::make_shared<Options>();
     addBenchOptions(*app, o->bench);
     app->add_option("--size", o->size, "Of the picture")->type_name("WxH")->capture_default_str();

@@ -33,6 +33,7 @@ struct Options
     std::string filter = "average";
     std::string weights;
     std::string precision = "fp32";
+    std::string fuseFetch = "auto";
     std::string lod = "auto";
     bool stats = false;
     std::string json;
@@ -78,6 +79,8 @@ HairFilter filterOf(const Options& o)
         throw Error("--weights: only --filter unet has any");
     if (chosen->filter != HairFilter::UNet && o.precision != "fp32")
         throw Error("--precision: only --filter unet has any");
+    if (chosen->filter != HairFilter::UNet && o.fuseFetch != "auto")
+        throw Error("--fuse-fetch: only --filter unet has an input to fetch");
     return chosen->filter;
 }
 
@@ -226,6 +229,12 @@ Command addHairRender(CLI::App& parent)
         ->type_name("fp32|fp16")
         ->capture_default_str()
         ->check(CLI::IsMember({"fp32", "fp16"}));
+    app->add_option("--fuse-fetch", o->fuseFetch,
+                    "Of the network: fetch its input where layers read it, for less memory, or "
+                    "store it first; auto: what was measured faster on such a device")
+        ->type_name("on|off|auto")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"on", "off", "auto"}));
     addNumber(*app, "--frame", o->settings.frameIndex, "Another frame has other noise", 0u,
               1u << 24);
     app->add_option("--lod", o->lod,
@@ -241,6 +250,8 @@ Command addHairRender(CLI::App& parent)
                 o->settings.frames = framesOf(o->samples, "--samples");
                 o->settings.filter = filterOf(*o);
                 o->settings.halves = o->precision == "fp16";
+                if (o->fuseFetch != "auto")
+                    o->settings.fuseFetch = o->fuseFetch == "on";
                 o->settings.lod = parseLod(o->lod);
                 return run("hair render", *o);
             }};

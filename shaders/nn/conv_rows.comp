@@ -21,16 +21,14 @@ const uint WW = (NX - 1) * SW + KW;
 const uint LEFT = PW;
 
 #include "nn/conv_window.glsl"
+#include "nn/conv_sums.glsl"
 
 void main()
 {
     Strip strip = stripOfInvocation(1, 1);
     Target target = targetOf(strip);
     placeWindow(int(strip.row * SH) - int(PH), int(strip.column * SW), strip.image);
-    float sum[K][NX];
-    [[unroll]] for (uint k = 0; k < K; ++k)
-        [[unroll]] for (uint n = 0; n < NX; ++n)
-            sum[k][n] = 0.0;
+    clearSums();
 
     uint turns = push.inChannels / U;
     int planeLoads = int(push.source.height * push.source.width / SPAN);
@@ -40,35 +38,10 @@ void main()
         dealWeights(weights);
         [[unroll]] for (uint u = 0; u < U; ++u) {
             loadWindow(plane);
-            [[unroll]] for (uint k = 0; k < K; ++k)
-                [[unroll]] for (uint t = 0; t < TAPS; ++t) {
-                    float weight = dealtWeight(weights, (u * K + k) * TAPS + t);
-                    [[unroll]] for (uint n = 0; n < NX; ++n)
-                        sum[k][n] += weight * window[t / KW][n * SW + t % KW];
-                }
+            addWindow(weights, u);
             plane += planeLoads;
         }
         weights += int(TURN_TEXELS);
     }
-
-    uint firstChannel = groupOfInvocation() * K;
-    [[unroll]] for (uint k = 0; k < K; ++k) {
-        float bias = biasOf(firstChannel + k);
-#ifdef RESULT_WIDE
-        [[unroll]] for (uint n = 0; n < NX; n += 8)
-            storeOctet(target, firstChannel + k, strip.row, strip.column + n,
-                       vec4(sum[k][n], sum[k][n + 1], sum[k][n + 2], sum[k][n + 3]) + bias,
-                       vec4(sum[k][n + 4], sum[k][n + 5], sum[k][n + 6], sum[k][n + 7]) + bias);
-#else
-        if ((FLAGS & kConvQuads) != 0) {
-            [[unroll]] for (uint n = 0; n < NX; n += 4)
-                storeQuad(target, firstChannel + k, strip.row, strip.column + n,
-                          vec4(sum[k][n], sum[k][n + 1], sum[k][n + 2], sum[k][n + 3]) + bias);
-        } else {
-            [[unroll]] for (uint n = 0; n < NX; ++n)
-                storeFloat(target, firstChannel + k, strip.row, strip.column + n, sum[k][n] + bias);
-        }
-#endif
-    }
-    reportLargest();
+    storeSums(strip, target);
 }

@@ -14,7 +14,13 @@
 #ifdef RESULT_WIDE
 #include "nn/wide_store.glsl"
 #endif
+// A kernel with more bindings or push constants than these says so before it includes this file.
+#ifndef GUARD_BINDING
 #define GUARD_BINDING 9
+#endif
+#ifndef MORE_PUSH
+#define MORE_PUSH
+#endif
 #include "nn/elements.glsl"
 #include "shared/nn_types.h"
 #include "nn/divide.glsl"
@@ -32,8 +38,7 @@ layout(constant_id = 9) const uint PW = 1;
 layout(constant_id = 10) const uint PHASES = 1; // workgroups that share the row phases of a transposed convolution
 layout(constant_id = 11) const uint FLAGS = 0;
 
-layout(binding = 0, SOURCE_TEXEL) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
-layout(binding = 1, SOURCE_QUAD) uniform readonly imageBuffer inputQuads;
+// Bindings 0 and 1 are the input's (conv_window.glsl).
 layout(binding = 2, rgba32f) uniform readonly imageBuffer packedWeights; // conv_pack.comp
 layout(binding = 3, r32f) uniform readonly imageBuffer parameters;       // biases
 layout(binding = 4, SOURCE_TEXEL) uniform readonly imageBuffer saved;    // kConvDerivative: the activated values
@@ -45,7 +50,7 @@ layout(binding = 8, scalar) writeonly buffer ResultOctets { u64vec4 resultOctets
 #else
 layout(binding = 8, scalar) buffer ResultQuads { RESULT_QUAD resultQuads[]; };
 #endif
-layout(push_constant, scalar) uniform Push { ConvRowsPush push; };
+layout(push_constant, scalar) uniform Push { ConvRowsPush push; MORE_PUSH };
 
 const uint kLanes = 8; // lanes that share a weight load
 const uint TAPS = KH * KW / PHASES;

@@ -7,6 +7,9 @@
 #ifndef STRANDLIGHT_NN_CONV_WINDOW_GLSL
 #define STRANDLIGHT_NN_CONV_WINDOW_GLSL
 
+layout(binding = 0, SOURCE_TEXEL) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
+layout(binding = 1, SOURCE_QUAD) uniform readonly imageBuffer inputQuads;
+
 const uint SPAN = (FLAGS & kConvQuads) != 0 ? 4 : 1;     // columns of a load
 const uint BEFORE = (LEFT + SPAN - 1) / SPAN;            // loads of a row before `column`
 const uint SKIP = BEFORE * SPAN - LEFT;                  // columns loaded before the window's first

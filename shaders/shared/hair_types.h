@@ -134,14 +134,30 @@ STRANDLIGHT_CONST(uint) kHairInputPlanes = 26u;
 STRANDLIGHT_CONST(uint) kHairInputExact = 24u;
 STRANDLIGHT_CONST(uint) kHairInputBlended = 25u;
 
-struct HairInputPush
+// Where the planes come from.
+struct HairPlaneSource
 {
-    TensorView planes; // rows of the picture, and past its border
-    uint firstRow;     // of the planes in the picture
-    uint width;        // of the picture
+    uint firstRow; // of the planes in the picture
+    uint width;    // of the picture
     uint height;
     float depthOffset; // planes hold (depth - offset) * scale, 0 without hair
     float depthScale;
+};
+
+struct HairInputPush
+{
+    TensorView planes; // rows of the picture, and past its border
+    HairPlaneSource from;
+};
+
+// Planes that hair_conv.comp has in shared memory at once.
+STRANDLIGHT_CONST(uint) kHairPartPlanes = 16u;
+
+// hair_conv.comp; "strips" are tiles.
+struct HairConvPush
+{
+    ConvRowsPush conv;
+    HairPlaneSource from;
 };
 
 struct HairTouchedPush

@@ -26,6 +26,7 @@ STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; ne
 
 STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
 STRANDLIGHT_CONST(uint) kConvQuads = 32u;     // rows are whole texels of four floats
+STRANDLIGHT_CONST(uint) kConvContinue = 64u;  // sums begin with what the output holds; of kernels that fetch their input
 
 // Side of a TileList's square tiles, in pixels of the layer's output: a multiple of the register tiles of the row kernels.
 STRANDLIGHT_CONST(uint) kTileSide = 8u;

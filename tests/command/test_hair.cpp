@@ -139,6 +139,7 @@ TEST_CASE("hair of a file is drawn, and its broken forms are refused before any 
     checkFails(runCommand(render(none, {"--weights", "x.safetensors"})), "--filter unet");
     checkFails(runCommand(render(none, {"--precision", "fp16"})), "--filter unet");
     checkFails(runCommand(render(none, {"--precision", "fp8"})), "--precision");
+    checkFails(runCommand(render(none, {"--fuse-fetch", "on"})), "--filter unet");
     checkFails(runCommand(render(none, {"--filter", "unet", "--weights", "x.safetensors"})),
                "x.safetensors");
     checkFails(runCommand({"hair", "-o", none}), "");

@@ -1,5 +1,6 @@
 // The hair filter against its parts in double: planes, network, kernel, composite; and that what no
 // strand touches stays as it is.
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "compute_nn/reference/kernel_filter.hpp"
 #include "compute_nn/reference/networks.hpp"
 #include "engine/base/error.hpp"
+#include "engine/graph/plan.hpp"
 #include "passes/hair_blend.hpp"
 #include "passes/hair_filter.hpp"
 #include "passes/hair_network.hpp"
@@ -257,17 +259,79 @@ TEST_CASE("hair filter: activations as halves change the picture by their roundi
     HairNetwork network = someNetwork(hairUNet(HairUNetSize::Small));
     const HairStrands hair = someStrands();
     const CpuImage floats = filter(network, {}, gradient(), hair).radiance;
-    const CpuImage halves = filter(network, {}, gradient(), hair, true).radiance;
-    CHECK(sameBytes(halves, filter(network, {.bandRows = 24}, gradient(), hair, true).radiance));
-    CHECK(
-        sameBytes(halves, filter(network, {.skipTiles = false}, gradient(), hair, true).radiance));
-    // Each stored value is off by up to 2^-10 of itself, those of a pixel on some ten ways to it.
-    double difference = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < floats.pixels.size(); ++i) {
-        const glm::dvec3 a(floats.pixels[i]), b(halves.pixels[i]);
-        difference += glm::dot(a - b, a - b);
-        size += glm::dot(a, a);
+    for (const bool fuse : {false, true}) { // fetched, the input alone is not rounded
+        CAPTURE(fuse);
+        const auto stored = [&](HairFilterSettings settings) {
+            settings.fuseFetch = fuse;
+            return filter(network, settings, gradient(), hair, true).radiance;
+        };
+        const CpuImage halves = stored({});
+        CHECK(sameBytes(halves, stored({.bandRows = 24})));
+        CHECK(sameBytes(halves, stored({.skipTiles = false})));
+        // Each stored value is off by up to 2^-10 of itself, those of a pixel on some ten ways to
+        // it.
+        double difference = 0.0, size = 0.0;
+        for (std::size_t i = 0; i < floats.pixels.size(); ++i) {
+            const glm::dvec3 a(floats.pixels[i]), b(halves.pixels[i]);
+            difference += glm::dot(a - b, a - b);
+            size += glm::dot(a, a);
+        }
+        CHECK_LE(std::sqrt(difference / size), 10.0 * 0x1p-10);
+        CHECK_GT(difference, 0.0);
     }
-    CHECK_LE(std::sqrt(difference / size), 10.0 * 0x1p-10);
-    CHECK_GT(difference, 0.0);
+}
+
+TEST_CASE("hair filter: layers that fetch the input give the bits of those that read its planes")
+{
+    const HairStrands hair = someStrands();
+    for (const HairUNetSize size :
+         {HairUNetSize::Small, HairUNetSize::Medium, HairUNetSize::Large}) { // the last with a head
+        CAPTURE(int(size));
+        HairNetwork network = someNetwork(hairUNet(size));
+        const Filtered planes = filter(network, {.fuseFetch = false}, gradient(), hair);
+        for (const HairFilterSettings& settings :
+             {HairFilterSettings{.skipTiles = false, .fuseFetch = true},
+              HairFilterSettings{.fuseFetch = true},
+              HairFilterSettings{.bandRows = 24, .fuseFetch = true}}) {
+            CAPTURE(settings.skipTiles);
+            CAPTURE(settings.bandRows);
+            const Filtered fetched = filter(network, settings, gradient(), hair);
+            CHECK(sameBytes(fetched.filtered, planes.filtered));
+            CHECK(sameBytes(fetched.radiance, planes.radiance));
+        }
+    }
+}
+
+TEST_CASE("hair filter: fetched, the input's planes are nowhere in memory")
+{
+    const UNetDesc net = hairUNet(HairUNetSize::Small);
+    Parameters parameters(context(), net.parameters(), 17);
+    const ImageDesc desc{kWidth, kHeight, 1, Format::RGBA32F, 1};
+    ImageDesc four = desc.with(Format::RGBA16F);
+    four.samples = 4;
+    Image features(context(), four, "features"), shape(context(), four, "shape");
+    Image blended(context(), desc, "blended"), filtered(context(), desc, "filtered");
+    Image radiance(context(), desc, "radiance");
+    const auto bytes = [&](bool fuse) { // of the largest transient, and of all
+        RenderGraph graph(context());
+        HairFilterInput input;
+        input.samples.features = graph.importImage(features);
+        input.samples.shape = graph.importImage(shape);
+        input.blended = graph.importImage(blended);
+        const ParameterIds weights(graph, parameters);
+        addHairFilterPasses(graph, net, weights, input,
+                            {graph.importImage(filtered), graph.importImage(radiance)},
+                            {.fuseFetch = fuse});
+        const GraphPlan& plan = graph.compile();
+        std::uint64_t largest = 0;
+        for (std::size_t r = 0; r < plan.resources.size(); ++r)
+            if (plan.resources[r].used && !plan.description.resources[r].imported)
+                largest = std::max(largest, plan.description.resources[r].bytes());
+        return std::array{largest, plan.transientBytes};
+    };
+    const std::uint64_t planes = hairInputDesc(kWidth, kHeight).bytes();
+    const auto read = bytes(false), fetched = bytes(true);
+    CHECK_GE(read[0], planes); // a range of level 0
+    CHECK_LT(fetched[0], planes);
+    CHECK_EQ(fetched[1], read[1] - planes);
 }

@@ -1,0 +1,41 @@
+// How the sliding-window kernels cut a layer, and their weights in the order in which they deal
+// them out; internal to the passes of these kernels.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "compute_nn/conv_passes.hpp"
+#include "compute_nn/conv_tiles.hpp"
+#include "compute_nn/conv_work.hpp"
+
+namespace strandlight {
+
+// How a layer is cut: into groups, that is blocks of output channels x row phases, and strips.
+struct RowPlan
+{
+    Extent2 scale; // pixels of the result per row and column of the grid
+    std::uint32_t turn, turns, blocks, channels, phases, taps, strips;
+    std::uint64_t groupWork; // multiply-adds of one strip
+
+    RowPlan(const ConvPass& conv, const RowTile& tile, const TensorDesc& source,
+            const TensorDesc& result)
+        : scale(conv.transposed ? conv.stride : Extent2{1, 1}), turn(unroll(source.c, tile.turn)),
+          turns(source.c / turn), blocks(divideUp(result.c, tile.channels)),
+          channels(divideUp(result.c, blocks)), phases(tile.splitRows ? scale.h : 1),
+          taps(conv.kernel.h * conv.kernel.w / phases),
+          strips(result.n * divideUp(result.h, scale.h) *
+                 divideUp(divideUp(result.w, scale.w), tile.columns)),
+          groupWork(std::uint64_t(taps) * source.c * channels * tile.columns)
+    {
+    }
+    std::uint32_t groups() const { return blocks * phases; }
+    std::uint32_t turnTexels() const { return divideUp(turn * channels * taps, 4); }
+};
+
+// Packs them in a dispatch of the same pass.
+BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
+                     const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
+                     BufferId parameters, std::uint32_t outChannels);
+
+} // namespace strandlight
