@@ -1,9 +1,6 @@
 // strandlight bench hair: held-out pictures of hair by method, against a supersampled truth.
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -11,7 +8,6 @@
 #include "engine/base/error.hpp"
 #include "engine/base/progress.hpp"
 #include "engine/scene/hair_head.hpp"
-#include "passes/hair_network.hpp"
 #include "passes/hair_study.hpp"
 #include "passes/hair_truth.hpp"
 #include "samples/strandlight/bench_hair.hpp"
@@ -29,78 +25,6 @@ struct HairBench
     std::string out;           // folder of pictures
     std::string mohawk;
 };
-
-struct NamedNetwork
-{
-    std::string width;
-    HairNetwork network;
-};
-
-struct Method
-{
-    std::string name;
-    HairFilter filter = HairFilter::Average;
-    std::uint32_t frames = 1;
-    HairNetwork* network = nullptr;
-    std::uint32_t lod = 1; // 0: by projected width
-    bool skipTiles = true;
-    bool halves = false; // activations stored as halves
-};
-
-// The first one is what the others' errors are divided by.
-std::vector<Method> methodsOf(bool quick, std::vector<NamedNetwork>& networks, bool halves)
-{
-    std::vector<Method> methods = {{"4 averaged"},
-                                   {"16 averaged", HairFilter::Average, 4},
-                                   {"64 averaged", HairFilter::Average, 16}};
-    if (!quick)
-        methods.push_back({"256 averaged", HairFilter::Average, 64});
-    methods.push_back({"4 alpha to coverage", HairFilter::AlphaToCoverage});
-    methods.push_back({"4 coverage", HairFilter::Coverage});
-    methods.push_back({"blend", HairFilter::Blend});
-    for (NamedNetwork& named : networks)
-        methods.push_back({"4 U-Net " + named.width, HairFilter::UNet, 1, &named.network});
-    if (networks.empty())
-        return methods;
-    const std::string name = "4 U-Net " + networks[0].width;
-    HairNetwork* first = &networks[0].network;
-    methods.push_back({name + ", all tiles", HairFilter::UNet, 1, first, 1, false});
-    if (halves)
-        methods.push_back({name + ", fp16", HairFilter::UNet, 1, first, 1, true, true});
-    for (const std::uint32_t lod : {2u, 4u, 0u})
-        methods.push_back({name + ", lod " + (lod > 0 ? std::to_string(lod) : "auto"),
-                           HairFilter::UNet, 1, first, lod});
-    return methods;
-}
-
-const char* widthOf(const UNetDesc& net)
-{
-    const auto same = [&](HairUNetSize size) {
-        return net.down == hairUNet(size).down && net.up == hairUNet(size).up;
-    };
-    return same(HairUNetSize::Small)    ? "small"
-           : same(HairUNetSize::Medium) ? "medium"
-           : same(HairUNetSize::Large)  ? "large"
-                                        : "of other width";
-}
-
-std::vector<NamedNetwork> openNetworks(Context& context, const std::vector<std::string>& files)
-{
-    std::vector<NamedNetwork> networks;
-    for (const std::string& file : files) {
-        HairNetwork network = loadHairNetwork(context, file);
-        networks.push_back({widthOf(network.net), std::move(network)});
-    }
-    if (files.empty() && !builtinHairWeights().empty()) {
-        HairNetwork network = builtinHairNetwork(context);
-        networks.push_back({widthOf(network.net), std::move(network)});
-    }
-    for (const char* width : {"small", "medium", "large"})
-        if (std::none_of(networks.begin(), networks.end(),
-                         [&](const NamedNetwork& n) { return n.width == width; }))
-            std::printf("left out  U-Net %s: no --weights of that width\n", width);
-    return networks;
-}
 
 double millisecondsOf(const HairFrame& frame, const std::string& part)
 {
@@ -136,7 +60,7 @@ void check(const std::string& name, const HairError& error)
 class CaseBench
 {
 public:
-    CaseBench(Context& context, const HairBench& options, std::vector<NamedNetwork>& networks,
+    CaseBench(Context& context, const HairBench& options, std::vector<NamedHairNetwork>& networks,
               const HairStudyCase& subject)
         : context_(context), options_(options), networks_(networks), subject_(subject)
     {
@@ -156,8 +80,8 @@ public:
             hairTruth(context_, subject_.hair, head_ ? &*head_ : nullptr, subject_.camera, settings,
                       options_.keep ? cacheFolder() : std::filesystem::path());
         double base = 0.0;
-        for (const Method& method : methodsOf(options_.common.quick, networks_,
-                                              context_.device().missingForHalves.empty())) {
+        for (const HairMethod& method : hairMethods(options_.common.quick, networks_,
+                                                    context_.device().missingForHalves.empty())) {
             throwIfInterrupted();
             const HairFrame frame = render(settingsOf(method));
             const HairError error = compareHair(frame, truth);
@@ -207,7 +131,7 @@ private:
                               frame.radiance, truth.radiance);
     }
 
-    HairRenderSettings settingsOf(const Method& method) const
+    HairRenderSettings settingsOf(const HairMethod& method) const
     {
         HairRenderSettings settings = settings_;
         settings.filter = method.filter;
@@ -226,7 +150,7 @@ private:
     }
 
     // With other noise, a pixel on.
-    HairFrame nextFrame(const Method& method)
+    HairFrame nextFrame(const HairMethod& method)
     {
         HairRenderSettings settings = settingsOf(method);
         settings.frameIndex = method.frames;
@@ -236,7 +160,7 @@ private:
 
     Context& context_;
     const HairBench& options_;
-    std::vector<NamedNetwork>& networks_;
+    std::vector<NamedHairNetwork>& networks_;
     const HairStudyCase& subject_;
     HairRenderSettings settings_;
     std::optional<Scene> head_;
@@ -275,7 +199,7 @@ int benchHair(const HairBench& o)
     Context context = openDevice(o.common.device);
     BenchReport report("bench hair", o.common, context);
     report.about()["settings"]["truth_samples"] = truthSamples(o);
-    std::vector<NamedNetwork> networks = openNetworks(context, o.weights);
+    std::vector<NamedHairNetwork> networks = openHairNetworks(context, o.weights);
     const std::vector<HairStudyCase> cases = heldOutHair(o.mohawk, o.common.quick ? 4000 : 0);
     Progress progress("bench hair", cases.size());
     Json pictures = Json::array();
@@ -285,6 +209,7 @@ int benchHair(const HairBench& o)
             continue;
         CaseBench bench(context, o, networks, cases[i]);
         bench.run(report);
+        report.write(); // so that an interruption leaves what is done
         if (!bench.pictures().is_null())
             pictures.push_back(bench.pictures());
     }

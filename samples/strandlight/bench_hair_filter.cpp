@@ -1,6 +1,7 @@
 // strandlight bench hair-filter: the filter's network over pictures that hair covers in part, as a
 // whole, by tiles, and by tiles with the input fetched by the layers that read it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -18,7 +19,7 @@ struct Options
 {
     BenchOptions bench;
     std::string size = "640x384";
-    std::uint32_t runs = 5;
+    std::uint32_t runs = 9;
     bool byPass = false;
 };
 
@@ -42,68 +43,114 @@ CpuImage disc(Size size, double share)
     return blended;
 }
 
-struct Run
+enum Form
 {
-    Timing timing;
-    double mib = 0.0; // of the graph's transients, which share memory
-    std::vector<PassTiming> passes;
-    CpuImage radiance;
+    Dense,
+    Tiles,
+    Fused, // tiles, and the input fetched by the layers that read it
+    kForms
 };
 
-// Samples are cleared, not drawn: the filter's time does not depend on what they hold.
-Run runFilter(Context& context, const UNetDesc& net, Parameters& parameters, const CpuImage& hair,
-              bool skipTiles, bool fuseFetch, std::uint32_t runs)
+// One picture in one form. Samples are cleared, not drawn: the filter's time does not depend on
+// what they hold.
+class FilterFrame
 {
-    const ImageDesc desc{hair.width, hair.height, 1, Format::RGBA32F, 1};
-    ImageDesc four = desc.with(Format::RGBA16F);
-    four.samples = 4;
-    Image blended(context, desc, "blended"), filtered(context, desc, "filtered");
-    Image radiance(context, desc, "radiance"), features(context, four, "features");
-    Image shape(context, four, "shape");
-    blended.upload(hair);
-    RenderGraph graph(context);
-    HairFilterInput input;
-    input.samples.features = graph.importImage(features);
-    input.samples.shape = graph.importImage(shape);
-    input.blended = graph.importImage(blended);
-    const ParameterIds weights(graph, parameters);
-    addHairFilterPasses(graph, net, weights, input,
-                        {graph.importImage(filtered), graph.importImage(radiance)},
-                        {.skipTiles = skipTiles, .fuseFetch = fuseFetch});
-    const double mib = double(graph.compile().arenaBytes) / double(1 << 20);
-    const Timing timing = timeGraph(graph, runs);
-    std::vector<PassTiming> passes = timePasses(graph, runs);
-    return {timing, mib, std::move(passes), radiance.download()};
-}
+public:
+    FilterFrame(Context& context, const UNetDesc& net, Parameters& parameters, const CpuImage& hair,
+                Form form)
+        : blended_(context, floats(hair), "blended"), filtered_(context, floats(hair), "filtered"),
+          radiance_(context, floats(hair), "radiance"), features_(context, four(hair), "features"),
+          shape_(context, four(hair), "shape"), graph_(context)
+    {
+        blended_.upload(hair);
+        HairFilterInput input;
+        input.samples.features = graph_.importImage(features_);
+        input.samples.shape = graph_.importImage(shape_);
+        input.blended = graph_.importImage(blended_);
+        const ParameterIds weights(graph_, parameters);
+        addHairFilterPasses(graph_, net, weights, input,
+                            {graph_.importImage(filtered_), graph_.importImage(radiance_)},
+                            {.skipTiles = form != Dense, .fuseFetch = form == Fused});
+        mib_ = double(graph_.compile().arenaBytes) / double(1 << 20);
+    }
+
+    RenderGraph& graph() { return graph_; }
+    double mib() const { return mib_; } // of the graph's transients, which share memory
+    CpuImage radiance() const { return radiance_.download(); }
+
+private:
+    static ImageDesc floats(const CpuImage& hair)
+    {
+        return {hair.width, hair.height, 1, Format::RGBA32F, 1};
+    }
+    static ImageDesc four(const CpuImage& hair)
+    {
+        ImageDesc desc = floats(hair).with(Format::RGBA16F);
+        desc.samples = 4;
+        return desc;
+    }
+
+    Image blended_, filtered_, radiance_, features_, shape_;
+    RenderGraph graph_;
+    double mib_ = 0.0;
+};
 
 // A row for every pass of any form; a form without it has no time there.
-void addPassRows(BenchReport& report, const std::string& name, const Run& dense, const Run& tiles,
-                 const Run& fused)
+void addPassRows(BenchReport& report, const std::string& name,
+                 const std::array<std::vector<PassTiming>, kForms>& passes)
 {
     std::vector<std::string> names;
-    for (const Run* run : {&tiles, &fused})
-        for (const PassTiming& pass : run->passes)
+    for (const std::vector<PassTiming>& form : {passes[Tiles], passes[Fused]})
+        for (const PassTiming& pass : form)
             if (std::find(names.begin(), names.end(), pass.pass) == names.end())
                 names.push_back(pass.pass);
     for (const std::string& pass : names) {
         Json row = {{"name", name + ": " + pass}};
-        const auto add = [&](const char* column, const Run& run) {
-            for (const PassTiming& same : run.passes)
+        const auto add = [&](const char* column, Form form) {
+            for (const PassTiming& same : passes[form])
                 if (same.pass == pass)
                     row[column] = same.milliseconds;
         };
-        add("dense_ms", dense);
-        add("tiles_ms", tiles);
-        add("fused_ms", fused);
+        add("dense_ms", Dense);
+        add("tiles_ms", Tiles);
+        add("fused_ms", Fused);
         report.add(row);
     }
 }
 
-void requireSameBits(const std::string& name, const char* form, const Run& run, const Run& dense)
+void requireSameBits(const std::string& name, const CpuImage& form, const CpuImage& dense)
 {
-    if (std::memcmp(dense.radiance.pixels.data(), run.radiance.pixels.data(),
-                    dense.radiance.pixels.size() * sizeof(glm::vec4)) != 0)
-        throw Error(name + ": " + form + " gives other bits than the whole picture");
+    if (std::memcmp(dense.pixels.data(), form.pixels.data(),
+                    dense.pixels.size() * sizeof(glm::vec4)) != 0)
+        throw Error("bench hair-filter: " + name + " gives other bits than the whole picture");
+}
+
+void measure(BenchReport& report, const std::string& name, std::array<FilterFrame*, kForms> frames,
+             std::uint32_t runs, bool byPass)
+{
+    for (FilterFrame* frame : frames)
+        frame->graph().execute();
+    requireSameBits(name + " by tiles", frames[Tiles]->radiance(), frames[Dense]->radiance());
+    requireSameBits(name + " with a fused fetch", frames[Fused]->radiance(),
+                    frames[Dense]->radiance());
+    RenderGraph* const graphs[] = {&frames[Dense]->graph(), &frames[Tiles]->graph(),
+                                   &frames[Fused]->graph()};
+    const RoundTimings timings(graphs, runs);
+    report.add({{"name", name},
+                {"dense_ms", timings.of(Dense).median},
+                {"tiles_ms", timings.of(Tiles).median},
+                {"over_dense", timings.ratio(Tiles, Dense)},
+                {"tiles_mib", frames[Tiles]->mib()},
+                {"fused_ms", timings.of(Fused).median},
+                {"fused_over_tiles", timings.ratio(Fused, Tiles)},
+                {"fused_mib", frames[Fused]->mib()},
+                {"runs", runs}});
+    if (!byPass)
+        return;
+    std::array<std::vector<PassTiming>, kForms> passes;
+    for (std::size_t form = 0; form < kForms; ++form)
+        passes[form] = timePasses(*graphs[form], runs);
+    addPassRows(report, name, passes);
 }
 
 int run(const Options& o)
@@ -121,22 +168,10 @@ int run(const Options& o)
         if (!report.wants(name))
             continue;
         const CpuImage hair = disc(size, share);
-        const Run dense = runFilter(context, net, parameters, hair, false, false, runs);
-        const Run tiles = runFilter(context, net, parameters, hair, true, false, runs);
-        const Run fused = runFilter(context, net, parameters, hair, true, true, runs);
-        requireSameBits(name, "by tiles", tiles, dense);
-        requireSameBits(name, "the fused fetch", fused, dense);
-        report.add({{"name", name},
-                    {"dense_ms", dense.timing.median},
-                    {"tiles_ms", tiles.timing.median},
-                    {"over_dense", tiles.timing.median / dense.timing.median},
-                    {"tiles_mib", tiles.mib},
-                    {"fused_ms", fused.timing.median},
-                    {"fused_over_tiles", fused.timing.median / tiles.timing.median},
-                    {"fused_mib", fused.mib},
-                    {"runs", runs}});
-        if (o.byPass)
-            addPassRows(report, name, dense, tiles, fused);
+        FilterFrame dense(context, net, parameters, hair, Dense);
+        FilterFrame tiles(context, net, parameters, hair, Tiles);
+        FilterFrame fused(context, net, parameters, hair, Fused);
+        measure(report, name, {&dense, &tiles, &fused}, runs, o.byPass);
     }
     report.finish();
     return 0;
