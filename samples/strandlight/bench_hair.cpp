@@ -80,7 +80,7 @@ public:
             hairTruth(context_, subject_.hair, head_ ? &*head_ : nullptr, subject_.camera, settings,
                       options_.keep ? cacheFolder() : std::filesystem::path());
         double base = 0.0;
-        for (const HairMethod& method : hairMethods(options_.common.quick, networks_,
+        for (const HairMethod& method : hairMethods(truthSamples(options_), networks_,
                                                     context_.device().missingForHalves.empty())) {
             throwIfInterrupted();
             const HairFrame frame = render(settingsOf(method));

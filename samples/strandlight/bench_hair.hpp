@@ -33,9 +33,10 @@ struct HairMethod
 std::vector<NamedHairNetwork> openHairNetworks(Context& context,
                                                const std::vector<std::string>& files);
 
-// The first one is what the others' errors are divided by. `halves`: the device stores them.
-std::vector<HairMethod> hairMethods(bool quick, std::vector<NamedHairNetwork>& networks,
-                                    bool halves);
+// The first one is what the others' errors are divided by. No average of more than a quarter of the
+// truth's samples: its error would be the truth's. `halves`: the device stores them.
+std::vector<HairMethod> hairMethods(std::uint32_t truthSamples,
+                                    std::vector<NamedHairNetwork>& networks, bool halves);
 
 // Of "4 U-Net small, lod 2": "U-Net small, other settings"; of "16 averaged": "averaged".
 std::string hairSeries(const std::string& method);

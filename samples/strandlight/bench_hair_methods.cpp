@@ -40,13 +40,13 @@ std::vector<NamedHairNetwork> openHairNetworks(Context& context,
     return networks;
 }
 
-std::vector<HairMethod> hairMethods(bool quick, std::vector<NamedHairNetwork>& networks,
-                                    bool halves)
+std::vector<HairMethod> hairMethods(std::uint32_t truthSamples,
+                                    std::vector<NamedHairNetwork>& networks, bool halves)
 {
     std::vector<HairMethod> methods = {{"4 averaged"},
                                        {"16 averaged", HairFilter::Average, 4},
                                        {"64 averaged", HairFilter::Average, 16}};
-    if (!quick)
+    if (truthSamples >= 4 * 256)
         methods.push_back({"256 averaged", HairFilter::Average, 64});
     methods.push_back({"4 alpha to coverage", HairFilter::AlphaToCoverage});
     methods.push_back({"4 coverage", HairFilter::Coverage});
