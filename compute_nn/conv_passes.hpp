@@ -35,7 +35,7 @@ struct BackwardEpilogue
         0; // dX holds the channels of x from here on; 0 and all: the whole of x
 };
 
-// One convolution or transposed convolution; internal to conv2d.cpp and conv_transpose2d.cpp.
+// One convolution or transposed convolution, as forwardPass() and the layers make it.
 struct ConvPass
 {
     bool transposed = false;

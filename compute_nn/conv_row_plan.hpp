@@ -1,5 +1,5 @@
 // How the sliding-window kernels cut a layer, and their weights in the order in which they deal
-// them out; internal to the passes of these kernels.
+// them out; for the files of these kernels, here and in passes/hair_conv.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// How the convolution passes cut their work and bind what comes after the sum; internal to them.
+// How convolution passes cut their work and bind what comes after the sum; for the files of such
+// kernels.
 #pragma once
 
 #include <cstdint>

@@ -37,10 +37,14 @@ std::uint32_t chooseBandRows(const RenderGraph& graph, const UNetDesc& net,
 {
     if (settings.bandRows > 0)
         return (settings.bandRows + 7) / 8 * 8;
+    // Planes of a full row: level 0, or what layers that fetch the input write, as texels too.
     const std::uint32_t planes =
-        fused && net.head == 0 ? std::max(net.upChannels(0), net.out) : net.channels(0);
+        fused && net.head == 0 ? std::max({net.upChannels(0), net.out, (net.channels(1) + 3) / 4})
+                               : net.channels(0);
+    const std::uint64_t bytes =
+        fused ? graph.context().maxTensorBindingBytes() : graph.context().maxStorageBufferBytes();
     const std::uint64_t rowBytes = std::uint64_t(picture.w) * planes * sizeof(float);
-    const auto most = std::uint32_t(graph.context().maxStorageBufferBytes() / rowBytes / 8 * 8);
+    const auto most = std::uint32_t(bytes / rowBytes / 8 * 8);
     if (most < 3 * kMarginRows)
         throw Error("hair filter: a picture of " + std::to_string(picture.w) +
                     " pixels a row is too wide for the device");

@@ -188,7 +188,7 @@ void describe(BenchReport& report, const Json& pictures)
         report.add(std::move(mean));
     about["columns"] = hairColumns();
     about["plots"] = hairPlots(report.rows());
-    about["tables"] = hairTables();
+    about["tables"] = hairTables(report.rows());
     about["pictures"] = pictures;
 }
 
@@ -214,6 +214,8 @@ int benchHair(const HairBench& o)
             pictures.push_back(bench.pictures());
     }
     progress.update(cases.size());
+    if (report.rows().empty())
+        throw Error("--filter: no frame's name holds '" + o.common.filter + "'");
     print(report.rows());
     describe(report, pictures);
     report.write();

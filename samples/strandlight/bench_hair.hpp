@@ -29,7 +29,8 @@ struct HairMethod
     bool halves = false; // activations stored as halves
 };
 
-// Of the files, or the built-in ones without any. Says which widths are left out.
+// Of the files, or the built-in ones without any. Says which widths are left out; Error when two
+// files have the same, for rows are named by it.
 std::vector<NamedHairNetwork> openHairNetworks(Context& context,
                                                const std::vector<std::string>& files);
 
@@ -47,7 +48,7 @@ Json hairMeans(const Json& rows);
 
 Json hairFacts(const Json& rows); // headline numbers of rows without means
 Json hairPlots(const Json& rows);
-Json hairTables();
+Json hairTables(const Json& rows);
 Json hairColumns();
 
 } // namespace strandlight::cli

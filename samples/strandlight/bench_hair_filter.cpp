@@ -109,7 +109,7 @@ void addPassRows(BenchReport& report, const std::string& name,
         const auto add = [&](const char* column, Form form) {
             for (const PassTiming& same : passes[form])
                 if (same.pass == pass)
-                    row[column] = same.milliseconds;
+                    row[column] = row.value(column, 0.0) + same.milliseconds; // of all bands
         };
         add("dense_ms", Dense);
         add("tiles_ms", Tiles);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "engine/base/error.hpp"
 #include "samples/strandlight/bench_hair.hpp"
 
 namespace strandlight::cli {
@@ -33,6 +34,11 @@ std::vector<NamedHairNetwork> openHairNetworks(Context& context,
         HairNetwork network = builtinHairNetwork(context);
         networks.push_back({widthOf(network.net), std::move(network)});
     }
+    for (std::size_t i = 0; i < networks.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            if (networks[i].width == networks[k].width)
+                throw Error("--weights: '" + files[k] + "' and '" + files[i] + "' are both " +
+                            networks[i].width + "; compare them in two runs");
     for (const char* width : {"small", "medium", "large"})
         if (std::none_of(networks.begin(), networks.end(),
                          [&](const NamedHairNetwork& n) { return n.width == width; }))

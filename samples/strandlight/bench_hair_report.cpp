@@ -26,9 +26,9 @@ const Json* find(const Json& rows, const std::string& scene, const std::string& 
 }
 
 // A number of the filter's over that of another method.
-std::string over(const Json& filtered, const Json* other, const char* key)
+std::string over(const Json& filtered, const Json& other, const char* key)
 {
-    return other ? fixed(double(filtered[key]) / double((*other)[key]), 3) : "?";
+    return fixed(double(filtered[key]) / double(other[key]), 3);
 }
 
 Json plot(const std::string& title, const std::string& scene, const char* y)
@@ -51,9 +51,7 @@ std::string hairSeries(const std::string& method)
 {
     const std::string filter = method.substr(method.find(' ') + 1);
     const std::size_t variant = filter.find(", ");
-    return method == "blend"              ? method
-           : variant == std::string::npos ? filter
-                                          : filter.substr(0, variant) + ", other settings";
+    return variant == std::string::npos ? filter : filter.substr(0, variant) + ", other settings";
 }
 
 Json hairMeans(const Json& rows)
@@ -97,10 +95,10 @@ Json hairFacts(const Json& rows)
             better += (*filtered)["rmse"] < (*many)["rmse"] ? 1 : 0;
             facts.push_back(
                 {{"label", scene + ", " + method},
-                 {"value", "RMSE " + over(*filtered, four, "rmse") + " of 4 averaged, " +
-                               over(*filtered, many, "rmse") + " of 64 averaged; flicker " +
-                               over(*filtered, four, "flicker") + " and time " +
-                               over(*filtered, many, "ms") + " of those"}});
+                 {"value", "RMSE " + over(*filtered, *four, "rmse") + " of 4 averaged, " +
+                               over(*filtered, *many, "rmse") + " of 64 averaged; flicker " +
+                               over(*filtered, *four, "flicker") + " of 4 averaged, time " +
+                               over(*filtered, *many, "ms") + " of 64 averaged"}});
         }
         facts.push_back(
             {{"label", method + " has lower RMSE than 64 averaged"},
@@ -119,8 +117,10 @@ Json hairPlots(const Json& rows)
     return plots;
 }
 
-Json hairTables()
+Json hairTables(const Json& rows)
 {
+    std::vector<std::string> scenes = distinct(rows, "scene");
+    std::erase(scenes, kAllScenes);
     return {{{"title", "Mean of all frames"},
              {"columns",
               {"method", "rmse", "rmse_over_4", "psnr_db", "ssim", "flip", "coverage_error",
@@ -129,7 +129,8 @@ Json hairTables()
             {{"title", "Every frame"},
              {"columns",
               {"name", "rmse", "rmse_over_4", "psnr_db", "ssim", "flip", "coverage_error",
-               "flicker", "ms"}}},
+               "flicker", "ms"}},
+             {"where", {{"scene", scenes}}}},
             {{"title", "Milliseconds by pass"},
              {"note", "Mean of all frames."},
              {"columns",

@@ -77,14 +77,14 @@ int benchKernels(const BenchOptions& o)
     report.about()["ceilings"] = {
         {"multiply_add_gflops", ceilings.gflops()},
         {"multiply_add", "chains of a*b+c in registers, best run"},
-        {"of_multiply_add", "median over rounds of a case and, just after it, the multiply-adds"},
+        {"of_multiply_add", "median over rounds in which a case and the multiply-adds take turns"},
         {"exp_flops", ceilings.flopsOfExp},
         {"exp", "multiply-adds' flops in the time of one exponential of the network kernels"},
         {"triad_gb_per_s", ceilings.gigabytes()},
         {"triad", "a = b + s c from memory, 12 bytes an element, best run"},
         {"of_triad", "as of_multiply_add, where no flops are counted"}};
     if (o.quick)
-        std::printf("quick: images of a quarter of the size named, two rounds each\n");
+        std::printf("quick: images of a quarter of the size named, few rounds\n");
     report.add(describe("ceiling multiply-add", ceilings.multiplyAdd.found));
     report.add(describe("ceiling triad", ceilings.triad.found));
     Progress progress("bench kernels", cases.size());

@@ -231,7 +231,7 @@ Command addHairRender(CLI::App& parent)
         ->check(CLI::IsMember({"fp32", "fp16"}));
     app->add_option("--fuse-fetch", o->fuseFetch,
                     "Of the network: fetch its input where layers read it, for less memory, or "
-                    "store it first; auto: what was measured faster on such a device")
+                    "store it first; auto: off, as it is slower on CPUs and not measured on GPUs")
         ->type_name("on|off|auto")
         ->capture_default_str()
         ->check(CLI::IsMember({"on", "off", "auto"}));

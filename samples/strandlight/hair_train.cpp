@@ -33,7 +33,6 @@ struct Options
     bool memory = false;
 };
 
-// What the weights were made with: enough to make them again.
 // The shortest text that is read as the same number.
 std::string exactly(auto value)
 {

@@ -1,4 +1,4 @@
-// What the two sliding-window convolutions share: bindings, tile constants, where an invocation works, its weights and
+// What the sliding-window convolutions share: bindings, tile constants, where an invocation works, its weights and
 // what is stored.
 //
 // A strip is NX neighbouring columns of one row of the grid; the grid is the result for a convolution, and the result
@@ -38,10 +38,10 @@ layout(constant_id = 9) const uint PW = 1;
 layout(constant_id = 10) const uint PHASES = 1; // workgroups that share the row phases of a transposed convolution
 layout(constant_id = 11) const uint FLAGS = 0;
 
-// Bindings 0 and 1 are the input's (conv_window.glsl).
+// Bindings 0 and 1 are the input's: conv_window.glsl, or images (hair_conv.comp).
 layout(binding = 2, rgba32f) uniform readonly imageBuffer packedWeights; // conv_pack.comp
 layout(binding = 3, r32f) uniform readonly imageBuffer parameters;       // biases
-layout(binding = 4, SOURCE_TEXEL) uniform readonly imageBuffer saved;    // kConvDerivative: the activated values
+layout(binding = 4, SOURCE_TEXEL) uniform readonly imageBuffer saved;    // kConvDerivative: what was activated; kConvContinue: result
 layout(binding = 5, SOURCE_QUAD) uniform readonly imageBuffer savedQuads;
 layout(binding = 6, r32ui) uniform readonly uimageBuffer tiles; // kConvTiles: x | y << 16 of each active tile
 layout(binding = 7, scalar) buffer Result { RESULT_ELEMENT result[]; };  // [N,K',H',W']

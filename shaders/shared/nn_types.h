@@ -68,7 +68,7 @@ struct ConvPush
     float slope; // of the activation below zero; 1: no activation
 };
 
-// conv_rows.comp and conv_transpose_rows.comp; kernel, stride and padding are specialisation constants.
+// conv_rows.comp, conv_transpose_rows.comp and hair_conv.comp; kernel, stride and padding are specialisation constants.
 struct ConvRowsPush
 {
     TensorView source;
@@ -84,7 +84,7 @@ struct ConvRowsPush
     float slope;
 };
 
-// Weights for those two, by conv_pack.comp.
+// Weights for those, by conv_pack.comp.
 struct ConvPackPush
 {
     uint texels; // in all
