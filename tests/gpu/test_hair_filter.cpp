@@ -10,7 +10,6 @@
 #include "compute_nn/reference/kernel_filter.hpp"
 #include "compute_nn/reference/networks.hpp"
 #include "engine/base/error.hpp"
-#include "engine/graph/plan.hpp"
 #include "passes/hair_blend.hpp"
 #include "passes/hair_filter.hpp"
 #include "passes/hair_network.hpp"
@@ -300,38 +299,4 @@ TEST_CASE("hair filter: layers that fetch the input give the bits of those that 
             CHECK(sameBytes(fetched.radiance, planes.radiance));
         }
     }
-}
-
-TEST_CASE("hair filter: fetched, the input's planes are nowhere in memory")
-{
-    const UNetDesc net = hairUNet(HairUNetSize::Small);
-    Parameters parameters(context(), net.parameters(), 17);
-    const ImageDesc desc{kWidth, kHeight, 1, Format::RGBA32F, 1};
-    ImageDesc four = desc.with(Format::RGBA16F);
-    four.samples = 4;
-    Image features(context(), four, "features"), shape(context(), four, "shape");
-    Image blended(context(), desc, "blended"), filtered(context(), desc, "filtered");
-    Image radiance(context(), desc, "radiance");
-    const auto bytes = [&](bool fuse) { // of the largest transient, and of all
-        RenderGraph graph(context());
-        HairFilterInput input;
-        input.samples.features = graph.importImage(features);
-        input.samples.shape = graph.importImage(shape);
-        input.blended = graph.importImage(blended);
-        const ParameterIds weights(graph, parameters);
-        addHairFilterPasses(graph, net, weights, input,
-                            {graph.importImage(filtered), graph.importImage(radiance)},
-                            {.fuseFetch = fuse});
-        const GraphPlan& plan = graph.compile();
-        std::uint64_t largest = 0;
-        for (std::size_t r = 0; r < plan.resources.size(); ++r)
-            if (plan.resources[r].used && !plan.description.resources[r].imported)
-                largest = std::max(largest, plan.description.resources[r].bytes());
-        return std::array{largest, plan.transientBytes};
-    };
-    const std::uint64_t planes = hairInputDesc(kWidth, kHeight).bytes();
-    const auto read = bytes(false), fetched = bytes(true);
-    CHECK_GE(read[0], planes); // a range of level 0
-    CHECK_LT(fetched[0], planes);
-    CHECK_EQ(fetched[1], read[1] - planes);
 }
