@@ -23,7 +23,7 @@ struct BakeSettings
     std::uint32_t environmentLobes = 8; // for the second set, when the scene has an environment
     std::uint32_t samplesPerDirection = 8;
     std::uint32_t bounces = 16;
-    std::uint32_t steps = 600; // of the fit
+    std::uint32_t steps = FitSettings{}.steps;
     std::uint32_t seed = 1;
     FitMode fit = FitMode::Direct;
     // Lobes are dropped, tile by tile, while the fit's error grows by no more than this fraction;

@@ -1,11 +1,16 @@
 #include "passes/gi_study.hpp"
 
-#include <functional>
+#include "engine/base/progress.hpp"
 
 namespace strandlight {
 namespace {
 
-using Rows = std::vector<GiRow>;
+struct Case
+{
+    const char* knob;
+    GiChoice choice;
+};
+using Cases = std::vector<Case>;
 
 GiChoice withEveryLobe(GiChoice choice)
 {
@@ -13,13 +18,13 @@ GiChoice withEveryLobe(GiChoice choice)
     return choice;
 }
 
-void addRepresentations(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
+void addRepresentations(const GiSweep& sweep, Cases& cases)
 {
     const auto add = [&](const std::string& representation, std::uint32_t lobes) {
         GiChoice choice = withEveryLobe(sweep.base);
         choice.representation = representation;
         choice.lobes = lobes;
-        rows.push_back(measure.measure("representation", choice));
+        cases.push_back({"representation", choice});
     };
     for (const char* rival : {"raw images", "SH L1", "SH L2"})
         add(rival, 0);
@@ -29,35 +34,35 @@ void addRepresentations(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
         add(fit, sweep.base.lobes);
 }
 
-void addLobes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
+void addLobes(const GiSweep& sweep, Cases& cases)
 {
     for (const std::uint32_t lobes : sweep.lobes)
         for (const GiStorage storage : {GiStorage::Fp32, GiStorage::Fp16, GiStorage::Packed}) {
             GiChoice choice = withEveryLobe(sweep.base);
             choice.lobes = lobes;
             choice.storage = storage;
-            rows.push_back(measure.measure("lobes and storage", choice));
+            cases.push_back({"lobes and storage", choice});
         }
 }
 
-void addDropped(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
+void addDropped(const GiSweep& sweep, Cases& cases)
 {
-    rows.push_back(measure.measure("dropped lobes", sweep.base));
+    cases.push_back({"dropped lobes", sweep.base});
     for (const float lobeError : sweep.lobeErrors) {
         GiChoice choice = sweep.base;
         choice.lobeError = lobeError;
-        rows.push_back(measure.measure("dropped lobes", choice));
+        cases.push_back({"dropped lobes", choice});
     }
 }
 
-void addSizes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
+void addSizes(const GiSweep& sweep, Cases& cases)
 {
     const auto add = [&](const char* knob, const std::vector<std::uint32_t>& values,
                          std::uint32_t GiChoice::*size) {
         for (const std::uint32_t value : values) {
             GiChoice choice = sweep.base;
             choice.*size = value;
-            rows.push_back(measure.measure(knob, choice));
+            cases.push_back({knob, choice});
         }
     };
     add("atlas", sweep.atlases, &GiChoice::atlas);
@@ -65,18 +70,18 @@ void addSizes(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
     add("samples", sweep.samples, &GiChoice::samples);
 }
 
-void addShading(GiMeasure& measure, const GiSweep& sweep, Rows& rows)
+void addShading(const GiSweep& sweep, Cases& cases)
 {
     for (const SpecularModel model :
          {SpecularModel::Mixture, SpecularModel::NdfFilter, SpecularModel::Asg}) {
         GiChoice choice = sweep.base;
         choice.specular = model;
-        rows.push_back(measure.measure("shading", choice));
+        cases.push_back({"shading", choice});
     }
     for (const DiffuseModel model : {DiffuseModel::Hill, DiffuseModel::Wang}) {
         GiChoice choice = sweep.base;
         choice.diffuse = model;
-        rows.push_back(measure.measure("shading", choice));
+        cases.push_back({"shading", choice});
     }
 }
 
@@ -107,8 +112,15 @@ GiMeasureSettings smallGiMeasure()
 }
 
 GiStudy studyGi(Context& context, const Scene& scene, const GiSweep& sweep,
-                const GiMeasureSettings& settings)
+                const GiMeasureSettings& settings, const GiStudyWatch& watch)
 {
+    Cases cases;
+    addRepresentations(sweep, cases);
+    addLobes(sweep, cases);
+    addDropped(sweep, cases);
+    addSizes(sweep, cases);
+    addShading(sweep, cases);
+
     GiMeasure measure(context, scene, settings);
     GiStudy study;
     for (const std::string& fit : sweep.fits) {
@@ -122,11 +134,12 @@ GiStudy studyGi(Context& context, const Scene& scene, const GiSweep& sweep,
     study.frame = measure.lastFrame();
     study.savings = measure.lastSavings();
     study.picture = study.frame.radiance;
-    addRepresentations(measure, sweep, study.rows);
-    addLobes(measure, sweep, study.rows);
-    addDropped(measure, sweep, study.rows);
-    addSizes(measure, sweep, study.rows);
-    addShading(measure, sweep, study.rows);
+    for (const Case& c : cases) {
+        throwIfInterrupted();
+        study.rows.push_back(measure.measure(c.knob, c.choice));
+        if (watch)
+            watch(study);
+    }
     return study;
 }
 

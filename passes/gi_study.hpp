@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,11 @@ struct GiStudy
     BakeSavings savings;
 };
 
+// Is told after every row; `study` has the rows and traces so far.
+using GiStudyWatch = std::function<void(const GiStudy& study)>;
+
 // Throws Interrupted when the user stops, Error when the scene cannot be baked.
 GiStudy studyGi(Context& context, const Scene& scene, const GiSweep& sweep,
-                const GiMeasureSettings& settings);
+                const GiMeasureSettings& settings, const GiStudyWatch& watch = {});
 
 } // namespace strandlight

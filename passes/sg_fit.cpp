@@ -10,6 +10,7 @@
 #include "engine/base/progress.hpp"
 #include "passes/fit_report.hpp"
 #include "passes/sg_fit_cnn.hpp"
+#include "passes/sg_fit_coarse.hpp"
 #include "passes/sg_fit_direct.hpp"
 #include "passes/sg_fit_irradiance.hpp"
 #include "passes/sg_prune.hpp"
@@ -28,12 +29,15 @@ double secondsSince(Clock::time_point start)
 // One submit is about this long, so that the user's wish to stop is heard soon.
 constexpr double kSliceSeconds = 0.15;
 constexpr std::uint32_t kMostStepsPerSlice = 64;
+// Fewer than this are not joined to blocks.
+constexpr std::uint32_t kFewestTexels = 256;
 
 // Runs the fit to its last step, saving and listening on the way. Returns the first step's loss.
-double runToEnd(DirectFit& fit, const FitProblem& problem, const FitSettings& settings,
-                double firstLoss, const FitCheckpoint* checkpoint, FitWatch* watch)
+double runToEnd(const char* what, DirectFit& fit, const FitProblem& problem,
+                const FitSettings& settings, double firstLoss, const FitCheckpoint* checkpoint,
+                FitWatch* watch)
 {
-    Progress progress("fit", settings.steps);
+    Progress progress(what, settings.steps);
     const auto save = [&] {
         if (!checkpoint || !checkpoint->save)
             return;
@@ -96,7 +100,7 @@ SgField refitKept(Context& context, const FitProblem& problem, const FitSettings
     outer.secondsBetweenSaves = checkpoint ? checkpoint->secondsBetweenSaves : 0.0;
     if (checkpoint && checkpoint->save)
         outer.save = [&](const FitState&) { checkpoint->save(before); };
-    runToEnd(fit, problem, refit, 0.0, &outer, nullptr);
+    runToEnd("refit", fit, problem, refit, 0.0, &outer, nullptr);
     SgField kept = fieldFromState(problem, fit.state());
     kept.tileSize = field.tileSize;
     kept.kept = field.kept;
@@ -113,12 +117,47 @@ FitState runDirect(Context& context, const FitProblem& problem, const FitSetting
                     " parameters does not belong to " + std::to_string(problem.texelCount()) +
                     " texels of " + std::to_string(problem.lobes) + " lobes");
     DirectFit fit(context, problem, settings, start);
-    statistics.firstLoss = runToEnd(fit, problem, settings, start.firstLoss, checkpoint, watch);
+    statistics.firstLoss =
+        runToEnd("fit", fit, problem, settings, start.firstLoss, checkpoint, watch);
     FitState state = fit.state();
     state.firstLoss = statistics.firstLoss;
     statistics.lastLoss = fit.loss();
     statistics.skippedSteps = state.skippedSteps;
     return state;
+}
+
+bool startsFromBlocks(const FitProblem& problem, const FitSettings& settings)
+{
+    return settings.coarseLevels > 0 && problem.texelCount() >= kFewestTexels;
+}
+
+// Of this level. Only the coarsest one looks for places, the others start in them; where there are
+// too few texels for blocks, they take the steps of the levels that are missing.
+FitSettings levelSettings(const FitProblem& problem, const FitSettings& settings)
+{
+    FitSettings level = settings;
+    if (startsFromBlocks(problem, settings))
+        level.coarseSmoothness = settings.smoothness;
+    else
+        level.steps = settings.steps << settings.coarseLevels;
+    return level;
+}
+
+// From the coarsest blocks down; `problem` itself is not fitted.
+FitState startFromBlocks(Context& context, const FitProblem& problem, const FitSettings& settings)
+{
+    if (!startsFromBlocks(problem, settings))
+        return startFit(problem, settings.start);
+    const CoarseProblem coarse = coarsen(problem);
+    FitSettings level = settings;
+    level.coarseLevels = settings.coarseLevels - 1;
+    level.steps = 2 * settings.steps;
+    const FitState start = startFromBlocks(context, coarse.problem, level);
+    level = levelSettings(coarse.problem, level);
+    DirectFit fit(context, coarse.problem, level, start);
+    runToEnd("fit blocks", fit, coarse.problem, level, 0.0, nullptr, nullptr);
+    const SgField blocks = fieldFromState(coarse.problem, fit.state());
+    return startFit(problem, interpolateBlocks(problem, coarse, blocks));
 }
 
 } // namespace
@@ -158,9 +197,10 @@ SgField fitLobes(Context& context, const FitProblem& problem, const FitSettings&
         const FitState* resume = checkpoint ? checkpoint->resume : nullptr;
         FitState state;
         if (settings.mode == FitMode::Direct) {
-            state = runDirect(context, problem, settings,
-                              resume ? *resume : startFit(problem, settings.start), checkpoint,
-                              watch, numbers);
+            // Blocks are short: a fit that is interrupted there begins again, later it goes on.
+            state = runDirect(context, problem, levelSettings(problem, settings),
+                              resume ? *resume : startFromBlocks(context, problem, settings),
+                              checkpoint, watch, numbers);
         } else {
             // The encoder is trained again when a bake is resumed: it is the same to the last bit.
             if (settings.mode == FitMode::Cnn || !resume)

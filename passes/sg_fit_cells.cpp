@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <unordered_map>
+#include <utility>
 
 #include "engine/base/assert.hpp"
 #include "engine/base/error.hpp"
@@ -14,53 +14,29 @@
 namespace strandlight {
 namespace {
 
-// Texels of an atlas by place. Missing and foreign texels are kSgFitNone.
-class TexelMap
+// Places are below 2^20 in x and y, charts below 2^24.
+std::uint64_t keyOf(std::uint64_t x, std::uint64_t y, std::uint64_t chart)
 {
-public:
-    explicit TexelMap(const Atlas& atlas)
-    {
-        places_.reserve(atlas.texels.size() * 2);
-        for (std::size_t i = 0; i < atlas.texels.size(); ++i)
-            places_.emplace(key(atlas.texels[i].x, atlas.texels[i].y), std::uint32_t(i));
-        atlas_ = &atlas;
-    }
-
-    std::uint32_t at(const AtlasTexel& from, int dx, int dy) const
-    {
-        if ((dx < 0 && from.x == 0) || (dy < 0 && from.y == 0))
-            return gpu::kSgFitNone;
-        const auto found =
-            places_.find(key(from.x + std::uint32_t(dx), from.y + std::uint32_t(dy)));
-        if (found == places_.end() || atlas_->texels[found->second].chart != from.chart)
-            return gpu::kSgFitNone;
-        return found->second;
-    }
-
-private:
-    static std::uint64_t key(std::uint32_t x, std::uint32_t y)
-    {
-        return (std::uint64_t(y) << 32) | x;
-    }
-    std::unordered_map<std::uint64_t, std::uint32_t> places_;
-    const Atlas* atlas_ = nullptr;
-};
+    return (chart << 40) | (y << 20) | x;
+}
 
 // Four corners of each cell, one after the other.
-std::vector<glm::uvec4> findCells(const Atlas& atlas, const TexelMap& map)
+std::vector<glm::uvec4> findCells(const std::vector<glm::uvec3>& places, const FitPlaces& texels)
 {
     std::vector<glm::uvec4> cells;
-    std::vector<bool> covered(atlas.texels.size(), false);
-    for (std::uint32_t t = 0; t < atlas.texels.size(); ++t) {
-        const AtlasTexel& texel = atlas.texels[t];
-        const glm::uvec4 cell(t, map.at(texel, 1, 0), map.at(texel, 0, 1), map.at(texel, 1, 1));
+    std::vector<bool> covered(places.size(), false);
+    for (std::uint32_t t = 0; t < places.size(); ++t) {
+        const auto at = [&, place = places[t]](int dx, int dy) {
+            return texels.at(int(place.x) + dx, int(place.y) + dy, place.z);
+        };
+        const glm::uvec4 cell(t, at(1, 0), at(0, 1), at(1, 1));
         if (cell.y == gpu::kSgFitNone || cell.z == gpu::kSgFitNone || cell.w == gpu::kSgFitNone)
             continue;
         cells.push_back(cell);
         for (int c = 0; c < 4; ++c)
             covered[cell[c]] = true;
     }
-    for (std::uint32_t t = 0; t < atlas.texels.size(); ++t)
+    for (std::uint32_t t = 0; t < places.size(); ++t)
         if (!covered[t])
             cells.push_back(glm::uvec4(t));
     // By texel, so that neighbouring lanes read neighbouring words and chunks are short ranges of
@@ -72,6 +48,21 @@ std::vector<glm::uvec4> findCells(const Atlas& atlas, const TexelMap& map)
 
 } // namespace
 
+FitPlaces::FitPlaces(const std::vector<glm::uvec3>& places)
+{
+    texels_.reserve(places.size() * 2);
+    for (std::size_t t = 0; t < places.size(); ++t)
+        texels_.emplace(keyOf(places[t].x, places[t].y, places[t].z), std::uint32_t(t));
+}
+
+std::uint32_t FitPlaces::at(int x, int y, std::uint32_t chart) const
+{
+    if (x < 0 || y < 0)
+        return gpu::kSgFitNone;
+    const auto found = texels_.find(keyOf(std::uint64_t(x), std::uint64_t(y), chart));
+    return found == texels_.end() ? gpu::kSgFitNone : found->second;
+}
+
 glm::uvec4 FitCells::cornersOf(std::uint32_t cell) const
 {
     return {corners[cell], corners[cellCount + cell], corners[2 * std::size_t(cellCount) + cell],
@@ -80,9 +71,18 @@ glm::uvec4 FitCells::cornersOf(std::uint32_t cell) const
 
 FitCells buildFitCells(const Atlas& atlas)
 {
-    const TexelMap map(atlas);
-    const std::vector<glm::uvec4> cells = findCells(atlas, map);
-    const std::size_t texelCount = atlas.texels.size();
+    std::vector<glm::uvec3> places;
+    places.reserve(atlas.texels.size());
+    for (const AtlasTexel& texel : atlas.texels)
+        places.emplace_back(texel.x, texel.y, texel.chart);
+    return buildFitCells(std::move(places));
+}
+
+FitCells buildFitCells(std::vector<glm::uvec3> places)
+{
+    const FitPlaces texels(places);
+    const std::vector<glm::uvec4> cells = findCells(places, texels);
+    const std::size_t texelCount = places.size();
     FitCells out;
     out.texelCount = std::uint32_t(texelCount);
     out.cellCount = std::uint32_t(cells.size());
@@ -102,8 +102,9 @@ FitCells buildFitCells(const Atlas& atlas)
     const glm::ivec2 offsets[4] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     for (std::size_t t = 0; t < texelCount; ++t)
         for (std::size_t n = 0; n < 4; ++n)
-            out.neighbours[n * texelCount + t] =
-                map.at(atlas.texels[t], offsets[n].x, offsets[n].y);
+            out.neighbours[n * texelCount + t] = texels.at(
+                int(places[t].x) + offsets[n].x, int(places[t].y) + offsets[n].y, places[t].z);
+    out.places = std::move(places);
     return out;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -21,6 +22,7 @@ struct FitCells
 {
     std::uint32_t texelCount = 0;
     std::uint32_t cellCount = 0;
+    std::vector<glm::uvec3> places;     // [texel] x, y, chart
     std::vector<std::uint32_t> corners; // [4, cell] texel; corner 1 is +x, corner 2 is +y
     std::vector<std::uint32_t> gather;  // [4, texel] cell * 4 + corner, or kSgFitNone
     std::vector<std::uint32_t>
@@ -30,6 +32,20 @@ struct FitCells
 };
 
 FitCells buildFitCells(const Atlas& atlas);
+// Of texels at these places: x, y, chart.
+FitCells buildFitCells(std::vector<glm::uvec3> places);
+
+// Texels by place.
+class FitPlaces
+{
+public:
+    explicit FitPlaces(const std::vector<glm::uvec3>& places);
+    // The texel there, or kSgFitNone; a chart knows none outside itself.
+    std::uint32_t at(int x, int y, std::uint32_t chart) const;
+
+private:
+    std::unordered_map<std::uint64_t, std::uint32_t> texels_;
+};
 
 // The directions of a hemi-octahedral image: unit vector, and its share of the hemisphere's solid
 // angle.

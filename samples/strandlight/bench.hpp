@@ -70,6 +70,7 @@ public:
     bool wants(const std::string& name) const; // does --filter let this row through?
     Json& about() { return about_; }           // what the JSON says beside the rows
     void add(Json row) { rows_.push_back(std::move(row)); }
+    void setRows(Json rows) { rows_ = std::move(rows); } // instead of those before
     const Json& rows() const { return rows_; }
     void finish() const; // prints the table and writes; throws Error without rows
     void write() const;  // --json and --csv

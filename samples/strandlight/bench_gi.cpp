@@ -113,20 +113,30 @@ void benchGi(const GiBenchOptions& options)
     Json rows = Json::array();
     Json pictures = Json::array(), passes = Json::array();
     for (const GiBenchScene& part : giBenchScenes(options)) {
+        if (!report.wants(part.name))
+            continue;
         const Scene scene = openScene(part.files);
         GiMeasureSettings settings = options.common.quick ? smallGiMeasure() : GiMeasureSettings{};
         settings.cache = options.folder;
         if (!part.camera.empty())
             settings.camera = chooseCamera(scene, part.camera);
         std::fprintf(stderr, "scene     %s\n", part.name.c_str());
-        const GiStudy study =
-            studyGi(context, scene, options.common.quick ? smallGiSweep() : GiSweep{}, settings);
+        const auto keep = [&](const GiStudy& soFar) { // an interruption leaves what is done
+            Json some = rows;
+            addGiRows(some, part.name, soFar);
+            report.setRows(std::move(some));
+            report.write();
+        };
+        const GiStudy study = studyGi(
+            context, scene, options.common.quick ? smallGiSweep() : GiSweep{}, settings, keep);
         addGiRows(rows, part.name, study);
         passes.push_back(passesOf(part.name, study.frame, study.savings));
         printSkipped(part.name, study);
         if (!options.folder.empty())
             pictures.push_back(savePictures(options.folder, part.name, study));
     }
+    if (rows.empty())
+        throw Error("--filter: no scene's name holds '" + options.common.filter + "'");
     addClosedFormRows(rows);
     const Json facts = giFacts(rows);
     print(rows, facts);
@@ -137,8 +147,7 @@ void benchGi(const GiBenchOptions& options)
     about["tables"] = giTables();
     about["pictures"] = pictures;
     about["passes"] = passes;
-    for (Json& row : rows)
-        report.add(std::move(row));
+    report.setRows(std::move(rows));
     report.write();
 }
 

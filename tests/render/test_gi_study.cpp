@@ -53,7 +53,13 @@ TEST_CASE("gi study: rows are consistent, and the truth is kept")
     GiMeasureSettings settings = tinyMeasure();
     settings.cache = folder.path();
     const Scene scene = loadScene("builtin:room");
-    const GiStudy study = studyGi(test::context(), scene, tinySweep(), settings);
+    std::size_t told = 1; // not of the base
+    const GiStudy study =
+        studyGi(test::context(), scene, tinySweep(), settings, [&](const GiStudy& soFar) {
+            CHECK(soFar.rows.size() == ++told);
+            CHECK(soFar.traces.size() >= 2);
+        });
+    CHECK(study.rows.size() == told);
 
     std::map<std::string, GiRow> ways, stored, shading;
     for (const GiRow& row : study.rows) {

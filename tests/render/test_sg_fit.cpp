@@ -205,6 +205,31 @@ TEST_CASE("between texels the joint fit beats texels apart; two runs are the sam
     CHECK(report.rows[2].interpolatedRmse <= 0.5 * report.rows[0].interpolatedRmse);
 }
 
+TEST_CASE("a start from blocks finds a better fit")
+{
+    Progress::setEnabled(false);
+    FitSettings settings;
+    settings.steps = 60;
+    const RoomProblem room = roomProblem(24, settings);
+    FitSettings single = settings;
+    single.coarseLevels = 0;
+    single.steps = 2 * settings.steps; // of all texels, where blocks take 1/2 + 1/4 of a step each
+    FitStatistics fromBlocks, fromCommon;
+    const SgField blocks = fitLobes(test::context(), room.problem, settings, &fromBlocks);
+    const SgField common = fitLobes(test::context(), room.problem, single, &fromCommon);
+    CHECK(sameBytes(blocks, fitLobes(test::context(), room.problem, settings)));
+    CHECK(fromBlocks.firstLoss < 0.5 * fromCommon.firstLoss);
+    FitProbes probes = cellCentreProbes(room.problem, 200);
+    test::captureRoomProbes(room.room, room.atlas, probes);
+    const FitReport report =
+        compareFits(room.problem, probes,
+                    {freeSgModel(room.problem, common, "common start", fromCommon.seconds),
+                     freeSgModel(room.problem, blocks, "from blocks", fromBlocks.seconds)});
+    MESSAGE(report.text());
+    CHECK(report.rows[1].interpolatedRmse < report.rows[0].interpolatedRmse);
+    CHECK(report.rows[1].texelRmse < report.rows[0].texelRmse);
+}
+
 TEST_CASE("the encoder learns the room, and refining its lobes helps")
 {
     Progress::setEnabled(false);
