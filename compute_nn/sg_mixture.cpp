@@ -136,9 +136,9 @@ TensorId sgMixtureForward(RenderGraph& graph, const SgMixtureDesc& desc, const T
     forParts(graph, desc, [&](const auto& push, std::uint32_t images, const auto& part) {
         const Binding list = directionsOf(desc, along, part);
         const Binding result = part(to, desc.directions * 3);
+        const Binding values = part(from, desc.lobes * 7);
         pass.dispatch(kernel, {images, slices, 1}, push,
-                      {part(from, desc.lobes * 7), list, list, result, result},
-                      {lobesAtOnce, blocks, tile});
+                      {values, list, list, result, result, values}, {lobesAtOnce, blocks, tile});
     });
     return radiance.as(to);
 }
@@ -157,12 +157,15 @@ TensorId sgMixtureBackward(RenderGraph& graph, const SgMixtureDesc& desc, const 
     const BufferId along = pass.read(directions);
     const BufferId from = pass.read(dRadiance.buffer);
     const BufferId to = pass.write(dRaw.buffer);
+    const KernelBlob& kernel = graph.context().cpuForms() && lobesAtOnce % 8 == 0
+                                   ? kernels::sg_mixture_backward_wide
+                                   : kernels::sg_mixture_backward;
     forParts(graph, desc, [&](const auto& push, std::uint32_t images, const auto& part) {
         const Binding list = directionsOf(desc, along, part);
         const Binding gradient = part(from, desc.directions * 3);
-        pass.dispatch(kernels::sg_mixture_backward, {images, desc.lobes / lobesAtOnce, 1}, push,
-                      {part(values, desc.lobes * 7), list, list, gradient, gradient,
-                       part(to, desc.lobes * 7)},
+        const Binding lobes = part(values, desc.lobes * 7);
+        pass.dispatch(kernel, {images, desc.lobes / lobesAtOnce, 1}, push,
+                      {lobes, list, list, gradient, gradient, part(to, desc.lobes * 7), lobes},
                       {lobesAtOnce, tile});
     });
     return dRaw.as(to);

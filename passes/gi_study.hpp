@@ -19,7 +19,7 @@ struct GiSweep
     std::vector<std::string> fits{"direct", "cnn", "cnn+refine"};
     std::vector<std::uint32_t> fixedLobes{5, 9, 12, 24};
     std::vector<std::uint32_t> lobes{2, 4, 6, 7, 8, 12, 16, 24}; // each in every storage
-    std::vector<float> lobeErrors{0.02f, 0.05f, 0.15f};          // of lobes that are dropped
+    std::vector<float> lobeErrors{0.05f, 0.12f, 0.14f, 0.2f};    // of lobes that are dropped
     std::vector<std::uint32_t> atlases{32, 64, 96, 128, 192, 256};
     std::vector<std::uint32_t> lightfields{8, 12, 16, 24, 32};
     std::vector<std::uint32_t> samples{1, 2, 4, 8, 16, 32};

@@ -28,9 +28,11 @@ layout(binding = 4, scalar) writeonly buffer RadianceOctets { u64vec4 radianceOc
 #else
 layout(binding = 4, scalar) writeonly buffer RadianceQuads { vec4 radianceQuads[]; };
 #endif
+layout(binding = 5, rgba32f) uniform readonly imageBuffer lobeQuads;
 layout(push_constant, scalar) uniform Push { SgMixturePush push; };
 
 #include "nn/sg_directions.glsl"
+#include "nn/sg_load_lobes.glsl"
 
 vec3 axis[LOBES];
 float falloff[LOBES]; // -sharpness/2, for powers of two
@@ -39,11 +41,11 @@ vec3 sum[TILE];
 
 void loadLobes(uint first)
 {
+    loadLobeValues(first);
     [[unroll]] for (uint l = 0; l < LOBES; ++l) {
-        int at = int(first + l) * 7;
-        axis[l] = vec3(imageLoad(lobes, at).x, imageLoad(lobes, at + 1).x, imageLoad(lobes, at + 2).x);
-        falloff[l] = -0.5 * kLog2E * imageLoad(lobes, at + 3).x;
-        amplitude[l] = vec3(imageLoad(lobes, at + 4).x, imageLoad(lobes, at + 5).x, imageLoad(lobes, at + 6).x);
+        axis[l] = vec3(lobeValues[7 * l], lobeValues[7 * l + 1], lobeValues[7 * l + 2]);
+        falloff[l] = -0.5 * kLog2E * lobeValues[7 * l + 3];
+        amplitude[l] = vec3(lobeValues[7 * l + 4], lobeValues[7 * l + 5], lobeValues[7 * l + 6]);
     }
 }
 

@@ -1,24 +1,35 @@
 // Gradient of the mixture and its decoder: a lane is an image, an invocation gathers over all directions of LOBES of its
 // lobes, in order. dRaw is overwritten. Saved: raw (decoded again here, which is cheaper than loading the lobe).
+// VARIANT wide RESULT_WIDE
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
+#ifdef RESULT_WIDE
+#include "nn/wide_store.glsl"
+#endif
+
 #include "nn/sg_lobe.glsl"
 
 layout(local_size_x = 8) in;
-layout(constant_id = 0) const uint LOBES = 1; // of one invocation
+layout(constant_id = 0) const uint LOBES = 1; // of one invocation; wide: a multiple of eight
 layout(constant_id = 1) const uint TILE = 1;  // directions at once, a multiple of four as in the forward pass, or 1
-layout(binding = 0, r32f) uniform readonly imageBuffer raw;        // [N,L,7]
+layout(binding = 0, r32f) uniform readonly imageBuffer lobes;      // [N,L,7] raw
 layout(binding = 1, r32f) uniform readonly imageBuffer directions; // [N,D,3] or [D,3], unit
 layout(binding = 2, rgba32f) uniform readonly imageBuffer directionQuads;
 layout(binding = 3, r32f) uniform readonly imageBuffer dRadiance; // strides as in the forward pass
 layout(binding = 4, rgba32f) uniform readonly imageBuffer dRadianceQuads;
+#ifdef RESULT_WIDE
+layout(binding = 5, scalar) writeonly buffer DRawOctets { u64vec4 dRawOctets[]; };
+#else
 layout(binding = 5, scalar) writeonly buffer DRaw { float dRaw[]; };
+#endif
+layout(binding = 6, rgba32f) uniform readonly imageBuffer lobeQuads;
 layout(push_constant, scalar) uniform Push { SgMixturePush push; };
 
 #include "nn/sg_directions.glsl"
+#include "nn/sg_load_lobes.glsl"
 
 vec3 dOut[TILE];
 
@@ -39,6 +50,22 @@ void loadOut(uint n, uint first)
     }
 }
 
+float dValues[7 * LOBES + 7];
+
+// `first`: lobe, a multiple of LOBES.
+void storeLobeGradients(uint first)
+{
+    uint at = first * 7;
+#ifdef RESULT_WIDE
+    [[unroll]] for (uint i = 0; i < 7 * LOBES; i += 8)
+        dRawOctets[(at + i) / 8] = asPairs(vec4(dValues[i], dValues[i + 1], dValues[i + 2], dValues[i + 3]),
+                                           vec4(dValues[i + 4], dValues[i + 5], dValues[i + 6], dValues[i + 7]));
+#else
+    [[unroll]] for (uint i = 0; i < 7 * LOBES; ++i)
+        dRaw[at + i] = dValues[i];
+#endif
+}
+
 void main()
 {
     uint n = push.firstImage + gl_GlobalInvocationID.x;
@@ -49,11 +76,11 @@ void main()
     float axisLength[LOBES], rawSharpness[LOBES], sharpness[LOBES];
     vec3 dAxis[LOBES], dAmplitude[LOBES];
     float dSharpness[LOBES];
+    loadLobeValues(firstLobe);
     [[unroll]] for (uint l = 0; l < LOBES; ++l) {
-        int at = int(firstLobe + l) * 7;
-        rawAxis[l] = vec3(imageLoad(raw, at).x, imageLoad(raw, at + 1).x, imageLoad(raw, at + 2).x);
-        rawSharpness[l] = imageLoad(raw, at + 3).x;
-        rawAmplitude[l] = vec3(imageLoad(raw, at + 4).x, imageLoad(raw, at + 5).x, imageLoad(raw, at + 6).x);
+        rawAxis[l] = vec3(lobeValues[7 * l], lobeValues[7 * l + 1], lobeValues[7 * l + 2]);
+        rawSharpness[l] = lobeValues[7 * l + 3];
+        rawAmplitude[l] = vec3(lobeValues[7 * l + 4], lobeValues[7 * l + 5], lobeValues[7 * l + 6]);
         axisLength[l] = rawAxisLength(rawAxis[l]);
         axis[l] = decodeAxis(rawAxis[l], axisLength[l]);
         sharpness[l] = decodeSharpness(rawSharpness[l]);
@@ -79,16 +106,14 @@ void main()
 
     // Back through the decoder: the part tangent to the sphere, over the raw length.
     [[unroll]] for (uint l = 0; l < LOBES; ++l) {
-        uint at = (firstLobe + l) * 7;
         dAxis[l] *= sharpness[l];
         vec3 tangent =
             axisLength[l] == 0.0 ? vec3(0.0) : (dAxis[l] - axis[l] * dot(axis[l], dAxis[l])) / axisLength[l];
-        dRaw[at] = tangent.x;
-        dRaw[at + 1] = tangent.y;
-        dRaw[at + 2] = tangent.z;
-        dRaw[at + 3] = dSharpness[l] * decodeSharpnessDerivative(rawSharpness[l], sharpness[l]);
-        dRaw[at + 4] = dAmplitude[l].x * nnSigmoid(rawAmplitude[l].x);
-        dRaw[at + 5] = dAmplitude[l].y * nnSigmoid(rawAmplitude[l].y);
-        dRaw[at + 6] = dAmplitude[l].z * nnSigmoid(rawAmplitude[l].z);
+        [[unroll]] for (uint c = 0; c < 3; ++c) {
+            dValues[7 * l + c] = tangent[c];
+            dValues[7 * l + 4 + c] = dAmplitude[l][c] * nnSigmoid(rawAmplitude[l][c]);
+        }
+        dValues[7 * l + 3] = dSharpness[l] * decodeSharpnessDerivative(rawSharpness[l], sharpness[l]);
     }
+    storeLobeGradients(firstLobe);
 }
