@@ -6,6 +6,31 @@
 
 namespace strandlight {
 
+gpu::ConvRowsPush rowPush(const TensorDesc& source, const TensorId& result,
+                          const gpu::TensorView& saved, const LayerWeights& weights, float slope)
+{
+    return {.source = {},
+            .result = result.view(),
+            .savedOffset = saved.offset,
+            .savedImageStride = saved.imageStride,
+            .inChannels = source.c,
+            .outChannels = result.desc.c,
+            .biasOffset = weights.biasOffset,
+            .firstGroup = 0,
+            .firstStrip = 0,
+            .endStrip = 0,
+            .slope = slope};
+}
+
+std::vector<std::uint32_t> rowConstants(const ConvPass& conv, const RowTile& tile,
+                                        const RowPlan& plan, std::uint32_t group,
+                                        std::uint32_t flags)
+{
+    return {group,          plan.channels,  tile.columns,  plan.turn,
+            conv.kernel.h,  conv.kernel.w,  conv.stride.h, conv.stride.w,
+            conv.padding.h, conv.padding.w, plan.phases,   flags};
+}
+
 BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
                      const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
                      BufferId parameters, std::uint32_t outChannels)

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include "compute_nn/conv_passes.hpp"
 #include "compute_nn/conv_tiles.hpp"
@@ -33,7 +34,16 @@ struct RowPlan
     std::uint32_t turnTexels() const { return divideUp(turn * channels * taps, 4); }
 };
 
-// Packs them in a dispatch of the same pass.
+// What conv_rows.glsl is told: push constants for all groups and strips from the first on, without
+// the source's view and the last strip; `saved`: of what the epilogue reads.
+gpu::ConvRowsPush rowPush(const TensorDesc& source, const TensorId& result,
+                          const gpu::TensorView& saved, const LayerWeights& weights, float slope);
+// Its specialization constants, in their order; `group`: invocations of a workgroup.
+std::vector<std::uint32_t> rowConstants(const ConvPass& conv, const RowTile& tile,
+                                        const RowPlan& plan, std::uint32_t group,
+                                        std::uint32_t flags);
+
+// Packs the weights in a dispatch of the same pass.
 BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
                      const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
                      BufferId parameters, std::uint32_t outChannels);

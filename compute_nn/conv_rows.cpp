@@ -66,31 +66,14 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
     const Binding packed =
         packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
-    gpu::ConvRowsPush push{.source = source.view(),
-                           .result = result.view(),
-                           .savedOffset = epilogue.savedView.offset,
-                           .savedImageStride = epilogue.savedView.imageStride,
-                           .inChannels = source.desc.c,
-                           .outChannels = result.desc.c,
-                           .biasOffset = weights.biasOffset,
-                           .firstGroup = 0,
-                           .firstStrip = 0,
-                           .endStrip = plan.strips,
-                           .slope = epilogue.slope};
+    gpu::ConvRowsPush push =
+        rowPush(source.desc, result, epilogue.savedView, weights, epilogue.slope);
+    push.source = source.view();
+    push.endStrip = plan.strips;
     const bool quads = hasQuads(conv, tile, source, result);
-    const std::vector<std::uint32_t> constants = {
-        kGroup,
-        plan.channels,
-        tile.columns,
-        plan.turn,
-        conv.kernel.h,
-        conv.kernel.w,
-        conv.stride.h,
-        conv.stride.w,
-        conv.padding.h,
-        conv.padding.w,
-        plan.phases,
-        epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0)};
+    const std::uint32_t flags =
+        epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0);
+    const std::vector<std::uint32_t> constants = rowConstants(conv, tile, plan, kGroup, flags);
     const KernelBlob& kernel =
         kernelFor(conv, source, result, quads && hasOctets(graph, conv, tile, result));
     // Without quads nothing reads these two, and the tensors may not be whole texels.

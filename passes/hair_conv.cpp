@@ -61,34 +61,15 @@ TensorId addHairConvPass(RenderGraph& graph, std::string_view name, const ConvPa
     const BufferId packed =
         packWeights(graph, pass, name, conv, plan, weights, parameters, y.desc.c);
     const glm::uvec3 picture = graph.extent(input.blended);
-    const gpu::TensorView result = y.view();
     gpu::HairConvPush push{
-        .conv = {.source = {0, 0, x.h, x.w},
-                 .result = result,
-                 .savedOffset = result.offset,
-                 .savedImageStride = result.imageStride,
-                 .inChannels = x.c,
-                 .outChannels = y.desc.c,
-                 .biasOffset = weights.biasOffset,
-                 .firstGroup = 0,
-                 .firstStrip = 0,
-                 .endStrip = 0,
-                 .slope = epilogue.slope},
+        .conv = rowPush(x, y, y.view(), weights, epilogue.slope), // kConvContinue reads y
         .from = {firstRow, picture.x, picture.y, input.depth.offset, input.depth.scale}};
-    const std::vector<std::uint32_t> constants = {
-        strips,
-        plan.channels,
-        tile.columns,
-        tile.turn,
-        conv.kernel.h,
-        conv.kernel.w,
-        conv.stride.h,
-        conv.stride.w,
-        conv.padding.h,
-        conv.padding.w,
-        plan.phases,
-        epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) |
-            (wholeQuads(y) ? gpu::kConvQuads : 0) | (continued ? gpu::kConvContinue : 0)};
+    push.conv.source.height = x.h;
+    push.conv.source.width = x.w;
+    const std::uint32_t flags = epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) |
+                                (wholeQuads(y) ? gpu::kConvQuads : 0) |
+                                (continued ? gpu::kConvContinue : 0);
+    const std::vector<std::uint32_t> constants = rowConstants(conv, tile, plan, strips, flags);
     const KernelBlob& kernel =
         y.element == Element::Half ? kernels::hair_conv_half : kernels::hair_conv;
     const TensorId done = y.as(std::get<BufferId>(into.resource));

@@ -156,8 +156,9 @@ FitState startFromBlocks(Context& context, const FitProblem& problem, const FitS
     level = levelSettings(coarse.problem, level);
     DirectFit fit(context, coarse.problem, level, start);
     runToEnd("fit blocks", fit, coarse.problem, level, 0.0, nullptr, nullptr);
-    const SgField blocks = fieldFromState(coarse.problem, fit.state());
-    return startFit(problem, interpolateBlocks(problem, coarse, blocks));
+    SgField field = interpolateBlocks(problem, coarse, fieldFromState(coarse.problem, fit.state()));
+    matchBrightness(problem, settings, field);
+    return startFit(problem, field);
 }
 
 } // namespace

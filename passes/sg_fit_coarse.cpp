@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "shaders/shared/rgb9e5.h"
 #include "shaders/shared/sg.h"
@@ -123,6 +124,32 @@ SgField interpolateBlocks(const FitProblem& fine, const CoarseProblem& coarse,
                 sums[k].amplitude * (std::abs(fine.scales[t]) / total)};
     }
     return field;
+}
+
+void matchBrightness(const FitProblem& problem, const FitSettings& settings, SgField& field)
+{
+    const std::size_t texels = problem.texelCount();
+    for (std::size_t t = 0; t < texels; ++t) {
+        if (problem.scales[t] <= 0.0f)
+            continue; // no image
+        const std::span<SgLobe> lobes(&field.lobes[t * problem.lobes], problem.lobes);
+        double seenByLobes = 0.0, ofLobes = 0.0;
+        for (std::size_t d = 0; d < problem.directionCount(); ++d) {
+            const glm::vec3 seen = gpu::unpackRgb9e5(problem.images[d * texels + t]);
+            const float brightness = (seen.x + seen.y + seen.z) / 3.0f / problem.scales[t];
+            const float weight =
+                problem.directions[d].w / (1.0f + settings.peakSoftening * brightness);
+            glm::vec3 light(0.0f);
+            for (const SgLobe& lobe : lobes)
+                light += lobe.amplitude * gpu::sgEvaluate(glm::vec3(problem.directions[d]),
+                                                          lobe.axis, std::exp(lobe.logSharpness));
+            seenByLobes += double(weight * glm::dot(seen, light));
+            ofLobes += double(weight * glm::dot(light, light));
+        }
+        const float gain = ofLobes > 0.0 ? float(std::max(seenByLobes / ofLobes, 0.0)) : 1.0f;
+        for (SgLobe& lobe : lobes)
+            lobe.amplitude *= gain;
+    }
 }
 
 } // namespace strandlight

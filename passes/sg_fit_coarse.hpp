@@ -24,4 +24,8 @@ CoarseProblem coarsen(const FitProblem& fine);
 SgField interpolateBlocks(const FitProblem& fine, const CoarseProblem& coarse,
                           const SgField& blocks);
 
+// Makes each texel's lobes together as bright as fits its own image best: what blocks saw may be
+// black in one of their texels, and a bright narrow lobe would take thousands of steps to fade.
+void matchBrightness(const FitProblem& problem, const FitSettings& settings, SgField& field);
+
 } // namespace strandlight

@@ -49,10 +49,9 @@ struct FitSettings
     float coarseSmoothness = 0.5f;
     float smoothness = 0.02f; // 0: none at any time
     // Coarse to fine (passes/sg_fit_coarse.hpp): how many times texels are joined to blocks of
-    // 2 x 2, which are fitted first, each time with twice the steps; few texels take those
-    // steps themselves. Against 600 steps of single
-    // texels, 2 levels lower the error between texels by 1 to 11 % in two thirds of the time; a
-    // third level is better on one scene and worse on another.
+    // 2 x 2, which are fitted first, each time with twice the steps; few texels take those steps
+    // themselves. Against 600 steps of single texels, 2 levels lower the error between texels by 1
+    // to 11 % in two thirds of the time; a third level is better on one scene, worse on another.
     std::uint32_t coarseLevels = 2;
     std::uint32_t cnnSteps = 600; // of the encoder, 512 texels each
     // Error-driven lobe count (passes/sg_prune.hpp): how much the fit's error may grow, as a

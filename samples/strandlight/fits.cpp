@@ -82,7 +82,7 @@ Command addFits(CLI::App& parent)
     addNumber(*app, "--spp", s.capture.samplesPerDirection, "Paths per direction", 1u, 65536u);
     addNumber(*app, "--bounces", s.capture.bounces, "Reflections on a path", 0u, 64u);
     addNumber(*app, "--lobes", s.fit.lobes, "Spherical gaussians per texel", 1u, 32u);
-    addNumber(*app, "--steps", s.fit.steps, "Steps of the direct fit", 0u, 1000000u);
+    addNumber(*app, "--steps", s.fit.steps, "Steps of the direct fit's last level", 0u, 1000000u);
     addNumber(*app, "--seed", s.capture.seed, "Of the random numbers", 0u, 0xffffffffu);
     app->add_option("--fit", o->modes, "Free-lobe modes, after the others")
         ->type_name("MODES")

@@ -62,6 +62,7 @@ TEST_CASE("wrong arguments are named")
         {{"bench"}, "subcommand"},
         {{"bench", "kernels", "--json", "a.txt"}, ".json"},
         {{"bench", "kernels", "--filter", "no such case"}, "no such case"},
+        {{"bench", "gi", "--filter", "no such scene"}, "no such scene"},
         {{"nn", "check"}, "FILES"},
     };
     for (const Case& wrong : cases)

@@ -1,10 +1,12 @@
 // Blocks of texels: what they see, and the way back to the texels.
 #include <algorithm>
+#include <cmath>
 
 #include <doctest/doctest.h>
 
 #include "passes/sg_fit_coarse.hpp"
 #include "shaders/shared/rgb9e5.h"
+#include "shaders/shared/sg.h"
 #include "tests/support/synthetic_lightfield.hpp"
 
 using namespace strandlight;
@@ -104,4 +106,58 @@ TEST_CASE("lobes of blocks reach the texels: bilinear, inside a chart, as bright
         CHECK(lobe.logSharpness ==
               doctest::Approx(inBlocks(place.x) - 2.0f * inBlocks(place.y)).epsilon(1e-5));
     }
+}
+
+TEST_CASE("lobes of a start are as bright as the texel's image")
+{
+    FitProblem problem;
+    problem.cells = buildFitCells(test::gridAtlas(2));
+    problem.lobes = 2;
+    problem.size = 8;
+    problem.directions = fitDirections(8);
+    problem.scales = {1.0f, 1e-4f, -1.0f, 1.0f};
+    SgField field;
+    field.lobeCount = 2;
+    for (int t = 0; t < 4; ++t) {
+        field.lobes.push_back({glm::vec3(0.0f, 0.6f, 0.8f), 1.0f, glm::vec3(1.0f, 2.0f, 0.5f)});
+        field.lobes.push_back({glm::vec3(0.0f, 0.0f, 1.0f), 4.0f, glm::vec3(0.3f)});
+    }
+    // Texel 0 saw three times its lobes, texel 1 nothing, texel 2 has no image, texel 3 saw
+    // something else.
+    for (const glm::vec4& d : problem.directions) {
+        glm::vec3 light(0.0f);
+        for (int k = 0; k < 2; ++k)
+            light +=
+                field.lobes[k].amplitude * gpu::sgEvaluate(glm::vec3(d), field.lobes[k].axis,
+                                                           std::exp(field.lobes[k].logSharpness));
+        for (const glm::vec3& seen :
+             {3.0f * light, glm::vec3(0.0f), light, glm::vec3(d.x * d.x, 0.1f, 0.4f)})
+            problem.images.push_back(gpu::packRgb9e5(seen));
+    }
+    const SgField before = field;
+    const FitSettings settings;
+    matchBrightness(problem, settings, field);
+    CHECK(field.lobes[0].amplitude.y == doctest::Approx(6.0).epsilon(4e-3));
+    CHECK(field.lobes[1].amplitude.x == doctest::Approx(0.9).epsilon(4e-3));
+    CHECK(field.lobes[2].amplitude == glm::vec3(0.0f));
+    CHECK(field.lobes[4].amplitude == before.lobes[4].amplitude);
+    // Of all factors the best: the weighted squared error is stationary.
+    const auto error = [&](float factor) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < problem.directions.size(); ++i) {
+            const glm::vec4& d = problem.directions[i];
+            const glm::vec3 seen = gpu::unpackRgb9e5(problem.images[4 * i + 3]);
+            glm::vec3 left = -seen;
+            for (int k = 6; k < 8; ++k)
+                left += factor * field.lobes[k].amplitude *
+                        gpu::sgEvaluate(glm::vec3(d), field.lobes[k].axis,
+                                        std::exp(field.lobes[k].logSharpness));
+            const float softened =
+                d.w / (1.0f + settings.peakSoftening * (seen.x + seen.y + seen.z) / 3.0f);
+            sum += double(softened * glm::dot(left, left));
+        }
+        return sum;
+    };
+    CHECK(error(1.0f) < error(0.95f));
+    CHECK(error(1.0f) < error(1.05f));
 }
