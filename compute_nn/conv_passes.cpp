@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "compute_nn/conv_channels.hpp"
 #include "compute_nn/conv_rows.hpp"
 #include "compute_nn/conv_tiles.hpp"
 #include "compute_nn/conv_work.hpp"
@@ -81,6 +82,9 @@ TensorId addBoundConvPass(RenderGraph& graph, std::string_view name, const ConvP
                           const TensorId& result)
 {
     STRANDLIGHT_ASSERT_EQ(source.desc.n, result.desc.n);
+    if (source.element == Element::Float)
+        if (const std::optional<RowTile> tile = channelTileFor(graph, conv, source.desc, result))
+            return addChannelConvPass(graph, name, conv, *tile, source, weights, result);
     const std::uint32_t scale = conv.transposed ? conv.stride.w : 1;
     // A transposed kernel that its padding covers has taps beyond any window.
     const bool windowed =

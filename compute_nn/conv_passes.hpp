@@ -45,6 +45,7 @@ struct ConvPass
     float slope = 1.0f;
     bool bias = false;
     BackwardEpilogue backward;
+    bool turned = false;             // the kernel is turned about: its last tap is the first
     const TileList* tiles = nullptr; // null: the whole result
     HalfGuard* guard = nullptr;      // of a result of halves
 };

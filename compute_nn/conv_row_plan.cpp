@@ -22,13 +22,13 @@ gpu::ConvRowsPush rowPush(const TensorDesc& source, const TensorId& result,
             .slope = slope};
 }
 
-std::vector<std::uint32_t> rowConstants(const ConvPass& conv, const RowTile& tile,
-                                        const RowPlan& plan, std::uint32_t group,
-                                        std::uint32_t flags)
+std::vector<std::uint32_t> rowConstants(const ConvPass& conv, const RowPlan& plan,
+                                        std::uint32_t group, std::uint32_t flags)
 {
-    return {group,          plan.channels,  tile.columns,  plan.turn,
-            conv.kernel.h,  conv.kernel.w,  conv.stride.h, conv.stride.w,
-            conv.padding.h, conv.padding.w, plan.phases,   flags};
+    return {group,          plan.channels, plan.columns,
+            plan.turn,      conv.kernel.h, conv.kernel.w,
+            conv.stride.h,  conv.stride.w, conv.padding.h,
+            conv.padding.w, plan.phases,   flags | (plan.minimal ? gpu::kConvMinimal : 0)};
 }
 
 BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view name,
@@ -40,14 +40,19 @@ BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view nam
                                  .weightStrideOut = conv.weightStrideOut,
                                  .weightStrideIn = conv.weightStrideIn,
                                  .outChannels = outChannels,
-                                 .channels = plan.channels,
+                                 .laneChannels = plan.channels / plan.lanes,
+                                 .channelLanes = plan.lanes,
                                  .turns = plan.turns,
                                  .turnInputs = plan.turn,
                                  .turnTexels = plan.turnTexels(),
                                  .taps = plan.taps,
                                  .phases = plan.phases,
+                                 .rowTaps = plan.rowTaps,
+                                 .kernelHeight = conv.kernel.h,
                                  .kernelWidth = conv.kernel.w,
-                                 .paddingHeight = conv.padding.h};
+                                 .paddingHeight = conv.padding.h,
+                                 .columnPhases = plan.minimal ? conv.stride.w : 0,
+                                 .turned = conv.turned};
     const BufferId packed = pass.write(
         graph.createBuffer(std::string(name) + " weights", std::uint64_t(push.texels) * 16));
     pass.dispatch(kernels::conv_pack, {push.texels, 1, 1}, push, {parameters, packed});

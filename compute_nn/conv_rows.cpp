@@ -73,7 +73,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     const bool quads = hasQuads(conv, tile, source, result);
     const std::uint32_t flags =
         epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0);
-    const std::vector<std::uint32_t> constants = rowConstants(conv, tile, plan, kGroup, flags);
+    const std::vector<std::uint32_t> constants = rowConstants(conv, plan, kGroup, flags);
     const KernelBlob& kernel =
         kernelFor(conv, source, result, quads && hasOctets(graph, conv, tile, result));
     // Without quads nothing reads these two, and the tensors may not be whole texels.
@@ -105,7 +105,8 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     for (std::uint32_t first = 0; first < plan.strips; first += slice) {
         push.firstStrip = first;
         push.endStrip = std::min(plan.strips, first + slice);
-        pass.dispatch(kernel, {push.endStrip - first, plan.groups(), 1}, push,
+        pass.dispatch(kernel, {plan.groups() * kGroup, divideUp(push.endStrip - first, kGroup), 1},
+                      push,
                       {from, fromQuads, packed, parameters, epilogue.saved, savedQuads, packed,
                        into, into, epilogue.guard},
                       constants);

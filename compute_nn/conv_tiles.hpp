@@ -7,13 +7,17 @@
 
 namespace strandlight {
 
-// Register tile of conv_rows.comp and conv_transpose_rows.comp.
+// Register tile of conv_rows.comp, conv_transpose_rows.comp and, where channels are dealt to lanes,
+// conv_channels.comp.
 struct RowTile
 {
-    std::uint32_t channels; // at most; blocks of output channels are made equal
-    std::uint32_t columns;  // of the grid (conv_rows.glsl)
-    std::uint32_t turn;     // input channels per loop turn, at most
-    bool splitRows = false; // transposed: an invocation computes one row phase, not all
+    std::uint32_t channels;  // at most; blocks of output channels are made equal
+    std::uint32_t columns;   // of the grid (conv_rows.glsl)
+    std::uint32_t turn;      // input channels per loop turn, at most
+    bool splitRows = false;  // transposed: an invocation computes one row phase, not all
+    bool minimal = false;    // by minimal_filter.h: 2 or 3 taps of a row meet each phase
+    std::uint32_t rows = 1;  // of the grid
+    std::uint32_t lanes = 1; // that share a block of channels
 };
 
 struct RowShape
@@ -21,6 +25,7 @@ struct RowShape
     bool transposed;
     Extent2 kernel;
     Extent2 stride;
+    friend bool operator==(const RowShape&, const RowShape&) = default;
 };
 
 // Null: no row kernel pays, the gather (conv.comp) takes it. `cpu` is Context::cpuForms(). One
@@ -28,5 +33,8 @@ struct RowShape
 // bits of the whole.
 const RowTile* findRowTile(bool cpu, const RowShape& shape, std::uint32_t gridWidth,
                            std::uint32_t images);
+
+// For conv_channels.comp, which takes a layer of such a shape if its size suits.
+const RowTile* findChannelTile(bool cpu, const RowShape& shape);
 
 } // namespace strandlight

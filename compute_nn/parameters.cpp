@@ -132,8 +132,6 @@ void ParameterIds::checkFinite(RenderGraph& graph, const std::string& name, Buff
                                std::uint32_t offset, std::uint32_t count, float limit)
 {
     STRANDLIGHT_ASSERT(slots_ < gpu::kStatusSlots);
-    const std::uint32_t chunk = std::max(32u, (count + 65535) / 65536);
-    checkTripBudget("finite_check", chunk);
     PassBuilder pass = graph.addComputePass("check " + name);
     const BufferId from = pass.read(buffer);
     status = pass.write(status);
@@ -144,10 +142,14 @@ void ParameterIds::checkFinite(RenderGraph& graph, const std::string& name, Buff
     for (std::uint32_t first = offset; first < end;) {
         const std::uint32_t bound = first / kStep * kStep;
         const auto part = std::uint32_t(std::min<std::uint64_t>(most, end - first));
-        const gpu::FiniteCheckPush push{first - bound, part, chunk, slots_, limit};
-        pass.dispatch(
-            kernels::finite_check, {(part + chunk - 1) / chunk, 1, 1}, push,
-            {Binding(from, bound * sizeof(float), (first - bound + part) * sizeof(float)), status});
+        const std::uint32_t quad = first % 4 == 0 && part % 4 == 0 ? 4 : 1;
+        const std::uint32_t texels = part / quad;
+        const std::uint32_t invocations = std::clamp(texels / 32 / 32, 1u, 2048u) * 32;
+        checkTripBudget("finite_check", texels / invocations + 1);
+        const gpu::FiniteCheckPush push{(first - bound) / quad, texels, invocations, slots_, limit};
+        const Binding tested(from, bound * sizeof(float), (first - bound + part) * sizeof(float));
+        pass.dispatch(kernels::finite_check, {invocations, 1, 1}, push,
+                      {tested, quad == 4 ? tested : Binding(status), status}, {quad});
         first += part;
     }
     if (slots_ < owner_->slotNames_.size())

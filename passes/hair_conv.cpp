@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compute_nn/conv_channels.hpp"
 #include "compute_nn/conv_row_plan.hpp"
 #include "engine/base/error.hpp"
 #include "engine/vk/device_limits.hpp"
@@ -17,9 +18,14 @@ static_assert(sizeof(gpu::HairConvPush) == 88);
 
 // All channels of a layer in one invocation, up to 32: another block of them would fetch the pixels
 // again.
-RowTile tileFor(std::uint32_t channels)
+RowTile tileFor(const RenderGraph& graph, const ConvPass& conv, bool continued, const TensorDesc& x,
+                const TensorId& y)
 {
-    return channels > 16 ? RowTile{32, 4, 1} : RowTile{16, 8, 1};
+    RowTile tile = y.desc.c > 16 ? RowTile{32, 4, 1} : RowTile{16, 8, 1};
+    // Sums at points cannot go on from a result.
+    const std::optional<RowTile> ofPlanes = channelTileFor(graph, conv, x, y);
+    tile.minimal = ofPlanes && ofPlanes->minimal && !continued;
+    return tile;
 }
 
 // What a tile of the result reads, in rows of texels of four floats (hair_conv.comp).
@@ -46,7 +52,7 @@ TensorId addHairConvPass(RenderGraph& graph, std::string_view name, const ConvPa
                          std::uint32_t firstRow, const LayerWeights& weights, const TensorId& y)
 {
     check(graph, conv, y);
-    const RowTile tile = tileFor(y.desc.c);
+    const RowTile tile = tileFor(graph, conv, continued, x, y);
     const RowPlan plan(conv, tile, x, y.desc);
     checkTripBudget("hair_conv", plan.turns + 2 * stageTexels(conv));
     const std::uint32_t strips = gpu::kTileSide * gpu::kTileSide / tile.columns; // of a tile
@@ -69,7 +75,7 @@ TensorId addHairConvPass(RenderGraph& graph, std::string_view name, const ConvPa
     const std::uint32_t flags = epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) |
                                 (wholeQuads(y) ? gpu::kConvQuads : 0) |
                                 (continued ? gpu::kConvContinue : 0);
-    const std::vector<std::uint32_t> constants = rowConstants(conv, tile, plan, strips, flags);
+    const std::vector<std::uint32_t> constants = rowConstants(conv, plan, strips, flags);
     const KernelBlob& kernel =
         y.element == Element::Half ? kernels::hair_conv_half : kernels::hair_conv;
     const TensorId done = y.as(std::get<BufferId>(into.resource));
@@ -85,7 +91,7 @@ TensorId addHairConvPass(RenderGraph& graph, std::string_view name, const ConvPa
     const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
         kDispatchWork / (plan.groupWork * plan.groups() * strips), 1, kMaxGroups));
     for (std::uint32_t& first = push.conv.firstStrip; first < grid.h * grid.w; first += slice)
-        pass.dispatch(kernel, {std::min(slice, grid.h * grid.w - first) * strips, plan.groups(), 1},
+        pass.dispatch(kernel, {plan.groups() * strips, std::min(slice, grid.h * grid.w - first), 1},
                       push,
                       {features, shape, packed, parameters, into, into, packed, into, into, blended,
                        epilogue.guard},

@@ -26,7 +26,7 @@ shared vec4 stage[kHairPartPlanes][STAGE_ROWS * STAGE_QUADS];
 const uint WW = (NX - 1) * SW + KW;
 float window[KH][WW];
 
-#include "nn/conv_sums.glsl"
+#include "nn/conv_strip.glsl"
 
 uvec2 tileOfGroup()
 {
@@ -35,7 +35,7 @@ uvec2 tileOfGroup()
         return uvec2(tile & 0xffffu, tile >> 16);
     }
     uint across = (push.result.width + kTileSide - 1) / kTileSide;
-    uint index = push.firstStrip + gl_WorkGroupID.x;
+    uint index = push.firstStrip + gl_WorkGroupID.y;
     uint row = divide(index, across);
     return uvec2(index - row * across, row);
 }

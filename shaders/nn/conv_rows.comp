@@ -21,7 +21,7 @@ const uint WW = (NX - 1) * SW + KW;
 const uint LEFT = PW;
 
 #include "nn/conv_window.glsl"
-#include "nn/conv_sums.glsl"
+#include "nn/conv_strip.glsl"
 
 void main()
 {

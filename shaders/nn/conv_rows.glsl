@@ -22,6 +22,7 @@
 #define MORE_PUSH
 #endif
 #include "nn/elements.glsl"
+#include "shared/minimal_filter.h"
 #include "shared/nn_types.h"
 #include "nn/divide.glsl"
 
@@ -53,7 +54,10 @@ layout(binding = 8, scalar) buffer ResultQuads { RESULT_QUAD resultQuads[]; };
 layout(push_constant, scalar) uniform Push { ConvRowsPush push; MORE_PUSH };
 
 const uint kLanes = 8; // lanes that share a weight load
-const uint TAPS = KH * KW / PHASES;
+const bool MINIMAL = (FLAGS & kConvMinimal) != 0; // four columns at a time (minimal_filter.h)
+const uint PHASE_TAPS = KW / SW;                  // of a row that meet one column phase; whole under kConvMinimal
+const uint POINTS = PHASE_TAPS + 3;               // minimalPoints(PHASE_TAPS)
+const uint TAPS = KH * (MINIMAL ? SW * POINTS : KW) / PHASES; // weights of an input channel
 const uint TURN_TEXELS = (U * K * TAPS + 3) / 4; // of packed weights
 const uint LOADS = (TURN_TEXELS + kLanes - 1) / kLanes;
 
@@ -81,7 +85,7 @@ Strip stripOfInvocation(uint scaleH, uint scaleW)
     uint gridHeight = (push.result.height + scaleH - 1) / scaleH;
     uint gridWidth = (push.result.width + scaleW - 1) / scaleW;
     uint perRow = (gridWidth + NX - 1) / NX;
-    uint index = push.firstStrip + gl_GlobalInvocationID.x;
+    uint index = push.firstStrip + gl_WorkGroupID.y * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
     strip.live = index < push.endStrip;
     index = min(index, push.endStrip - 1); // a dead lane repeats the last strip and stores nothing
     uint row = divide(index, perRow);
@@ -94,7 +98,7 @@ Strip stripOfInvocation(uint scaleH, uint scaleW)
 // Block of channels and row phase, the latter counting faster.
 uint groupOfInvocation()
 {
-    return push.firstGroup + gl_WorkGroupID.y;
+    return push.firstGroup + ((FLAGS & kConvTiles) != 0 ? gl_WorkGroupID.y : gl_WorkGroupID.x);
 }
 
 // The weights of a loop turn, a texel to each lane in turn.

@@ -1,50 +1,58 @@
-// The register tile of a convolution along rows: K output channels x NX columns of sums. Behind conv_rows.glsl and the
-// `window` of input pixels that a strip reads of one channel.
+// Sums of a convolution along rows: SUM_BLOCKS blocks, of a channel and a row of the result, of NX columns each. Behind
+// conv_rows.glsl and the `window` of input pixels that an invocation loads of one channel; the kernel defines SUM_BLOCKS.
+//
+// Under kConvMinimal the sums are those of minimal_filter.h: four columns are a tile, the taps of a row that meet the same
+// phase of the stride a correlation of their own. The phases add up at the same points.
 #ifndef STRANDLIGHT_NN_CONV_SUMS_GLSL
 #define STRANDLIGHT_NN_CONV_SUMS_GLSL
 
-float sum[K][NX];
+const uint COLUMN_TILES = MINIMAL ? NX / kMinimalTile : 1;
+const uint SUMS = MINIMAL ? COLUMN_TILES * POINTS : NX;
+
+float sum[SUM_BLOCKS][SUMS];
 
 void clearSums()
 {
-    [[unroll]] for (uint k = 0; k < K; ++k)
-        [[unroll]] for (uint n = 0; n < NX; ++n)
-            sum[k][n] = 0.0;
+    [[unroll]] for (uint i = 0; i < SUM_BLOCKS; ++i)
+        [[unroll]] for (uint n = 0; n < SUMS; ++n)
+            sum[i][n] = 0.0;
 }
 
-// The window of input channel `u` of a turn, whose weights are dealt and begin at `weights`.
-void addWindow(int weights, uint u)
+// Of a row of the window, a phase of the stride and a tile.
+MinimalPoints pointsOfWindow(uint row, uint phase, uint tile)
 {
-    [[unroll]] for (uint k = 0; k < K; ++k)
-        [[unroll]] for (uint t = 0; t < TAPS; ++t) {
-            float weight = dealtWeight(weights, (u * K + k) * TAPS + t);
-            [[unroll]] for (uint n = 0; n < NX; ++n)
-                sum[k][n] += weight * window[t / KW][n * SW + t % KW];
-        }
+    float inputs[6];
+    [[unroll]] for (uint j = 0; j < POINTS; ++j)
+        inputs[j] = window[row][(tile * kMinimalTile + j) * SW + phase];
+    return minimalInputs(PHASE_TAPS, inputs);
 }
 
-void storeSums(Strip strip, Target target)
+// Sums of four columns from n on.
+vec4 sumsOfFour(uint block, uint n)
 {
-    uint firstChannel = groupOfInvocation() * K;
-    [[unroll]] for (uint k = 0; k < K; ++k) {
-        float bias = biasOf(firstChannel + k);
+    if (!MINIMAL)
+        return vec4(sum[block][n], sum[block][n + 1], sum[block][n + 2], sum[block][n + 3]);
+    MinimalPoints m;
+    [[unroll]] for (uint j = 0; j < POINTS; ++j)
+        m.at[j] = sum[block][n / kMinimalTile * POINTS + j];
+    return minimalResults(PHASE_TAPS, m);
+}
+
+void storeBlock(uint block, Target target, uint channel, uint y, uint x, float bias)
+{
 #ifdef RESULT_WIDE
-        [[unroll]] for (uint n = 0; n < NX; n += 8)
-            storeOctet(target, firstChannel + k, strip.row, strip.column + n,
-                       vec4(sum[k][n], sum[k][n + 1], sum[k][n + 2], sum[k][n + 3]) + bias,
-                       vec4(sum[k][n + 4], sum[k][n + 5], sum[k][n + 6], sum[k][n + 7]) + bias);
+    [[unroll]] for (uint n = 0; n < NX; n += 8)
+        storeOctet(target, channel, y, x + n, sumsOfFour(block, n) + bias, sumsOfFour(block, n + 4) + bias);
 #else
-        if ((FLAGS & kConvQuads) != 0) {
-            [[unroll]] for (uint n = 0; n < NX; n += 4)
-                storeQuad(target, firstChannel + k, strip.row, strip.column + n,
-                          vec4(sum[k][n], sum[k][n + 1], sum[k][n + 2], sum[k][n + 3]) + bias);
-        } else {
-            [[unroll]] for (uint n = 0; n < NX; ++n)
-                storeFloat(target, firstChannel + k, strip.row, strip.column + n, sum[k][n] + bias);
-        }
-#endif
+    [[unroll]] for (uint n = 0; n < NX; n += 4) {
+        vec4 four = sumsOfFour(block, n) + bias;
+        if ((FLAGS & kConvQuads) != 0)
+            storeQuad(target, channel, y, x + n, four);
+        else
+            [[unroll]] for (uint c = 0; c < 4; ++c)
+                storeFloat(target, channel, y, x + n + c, four[c]);
     }
-    reportLargest();
+#endif
 }
 
 #endif

@@ -10,6 +10,10 @@
 layout(binding = 0, SOURCE_TEXEL) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
 layout(binding = 1, SOURCE_QUAD) uniform readonly imageBuffer inputQuads;
 
+// Rows of the image between neighbouring rows of the window.
+#ifndef ROW_STEP
+#define ROW_STEP 1
+#endif
 const uint SPAN = (FLAGS & kConvQuads) != 0 ? 4 : 1;     // columns of a load
 const uint BEFORE = (LEFT + SPAN - 1) / SPAN;            // loads of a row before `column`
 const uint SKIP = BEFORE * SPAN - LEFT;                  // columns loaded before the window's first
@@ -25,7 +29,7 @@ void placeWindow(int firstRow, int column, uint image)
     int origin = int(push.source.offset + image * push.source.imageStride);
     [[unroll]] for (uint i = 0; i < WH; ++i)
         [[unroll]] for (uint j = 0; j < ROW_LOADS; ++j) {
-            int y = firstRow + int(i);
+            int y = firstRow + int(i * ROW_STEP);
             int x = column + (int(j) - int(BEFORE)) * int(SPAN);
             loadInside[i][j] = uint(y) < uint(height) && uint(x) < uint(width);
             loadAddress[i][j] = (origin + (loadInside[i][j] ? y * width + x : 0)) / int(SPAN);

@@ -27,6 +27,7 @@ STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; ne
 STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
 STRANDLIGHT_CONST(uint) kConvQuads = 32u;     // rows are whole texels of four floats
 STRANDLIGHT_CONST(uint) kConvContinue = 64u;  // sums begin with what the output holds; of kernels that fetch their input
+STRANDLIGHT_CONST(uint) kConvMinimal = 128u;  // taps by minimal_filter.h: 2 or 3 of a row meet each phase of the stride
 
 // Side of a TileList's square tiles, in pixels of the layer's output: a multiple of the register tiles of the row kernels.
 STRANDLIGHT_CONST(uint) kTileSide = 8u;
@@ -92,14 +93,19 @@ struct ConvPackPush
     uint weightStrideOut; // floats between the weights of neighbouring output channels
     uint weightStrideIn;
     uint outChannels;
-    uint channels;   // of a block
+    uint laneChannels; // channels of a block are dealt to so many lanes, each having its own texels
+    uint channelLanes; // (1: a block has no lanes)
     uint turns;      // loop turns
     uint turnInputs; // input channels of a turn
     uint turnTexels;
     uint taps; // of a row phase, of which there are
     uint phases;
+    uint rowTaps; // of a kernel row
+    uint kernelHeight;
     uint kernelWidth;
     uint paddingHeight;
+    uint columnPhases; // the stride, for minimal_filter.h; else 0
+    uint turned;       // the kernel is turned about
 };
 
 // conv_weight_tile.comp: threads of a workgroup, and channels a of a thread.
@@ -205,9 +211,9 @@ struct LossPush
 
 struct FiniteCheckPush
 {
-    uint offset;
-    uint count;
-    uint chunk;
+    uint firstTexel;
+    uint texels;
+    uint invocations; // whole workgroups: they take texels in turn
     uint slot;
     float limit; // larger magnitudes are refused like infinities
 };

@@ -1,0 +1,107 @@
+#include "compute_nn/conv_channels.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "compute_nn/conv_row_plan.hpp"
+#include "compute_nn/conv_work.hpp"
+#include "compute_nn/tile_list.hpp"
+#include "engine/base/assert.hpp"
+#include "kernels/nn.gen.hpp"
+
+namespace strandlight {
+
+namespace {
+
+// Whether at least four fifths of what a tile computes exist.
+bool fillsTile(std::uint32_t count, std::uint32_t tile)
+{
+    return count * 5 >= divideUp(count, tile) * tile * 4;
+}
+
+// With stride 1 the transpose is a convolution by the kernel turned about.
+ConvPass asConvolution(ConvPass conv)
+{
+    if (conv.transposed) {
+        conv.transposed = false;
+        conv.padding = {conv.kernel.h - 1 - conv.padding.h, conv.kernel.w - 1 - conv.padding.w};
+        conv.turned = true;
+    }
+    return conv;
+}
+
+} // namespace
+
+std::optional<RowTile> channelTileFor(const RenderGraph& graph, const ConvPass& conv,
+                                      const TensorDesc& source, const TensorId& result)
+{
+    const gpu::TensorView to = result.view();
+    const bool strideOne = conv.stride == Extent2{1, 1};
+    const RowTile* found = findChannelTile(
+        graph.context().cpuForms(), {conv.transposed && !strideOne, conv.kernel, conv.stride});
+    if (!found || shuffleFlag(graph) == 0 || result.element != Element::Float ||
+        conv.backward.accumulate || source.w % 4 != 0 || to.width % 8 != 0 || to.offset % 8 != 0 ||
+        to.imageStride % 8 != 0)
+        return std::nullopt;
+    RowTile tile = *found;
+    tile.channels = result.desc.c % 24 == 0 ? 24 : result.desc.c > 8 ? 16 : 8;
+    if (!fillsTile(result.desc.c, tile.channels) || !fillsTile(result.desc.h, tile.rows))
+        return std::nullopt;
+    return tile;
+}
+
+TensorId addChannelConvPass(RenderGraph& graph, std::string_view name, const ConvPass& asGiven,
+                            const RowTile& found, const TensorId& source,
+                            const LayerWeights& weights, const TensorId& result)
+{
+    const ConvPass conv = asConvolution(asGiven);
+    RowTile tile = found;
+    if (conv.tiles)
+        tile.rows = gpu::kTileSide;
+    const RowPlan plan(conv, tile, source.desc, result.desc);
+    STRANDLIGHT_ASSERT(wholeQuads(source) && wholeQuads(result));
+    checkTripBudget("conv_channels", plan.turns + 1);
+
+    PassBuilder pass = graph.addComputePass(name);
+    const Binding from = source.binding(pass.read(source.buffer));
+    const BufferId parameters = pass.read(weights.block);
+    const Binding into = result.binding(pass.write(result.buffer));
+    const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
+    const Binding packed =
+        packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
+    gpu::ConvRowsPush push =
+        rowPush(source.desc, result, epilogue.savedView, weights, epilogue.slope);
+    push.source = source.view();
+    const std::uint32_t flags =
+        epilogue.flags | gpu::kConvQuads | (conv.tiles ? gpu::kConvTiles : 0);
+    std::vector<std::uint32_t> constants = rowConstants(conv, plan, kConvLanes, flags);
+    constants.push_back(tile.rows);
+
+    const TensorId done = result.as(std::get<BufferId>(into.resource));
+    if (conv.tiles) {
+        STRANDLIGHT_ASSERT_EQ(result.desc.n, 1u);
+        const BufferId tiles = pass.read(conv.tiles->tiles);
+        const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
+            kDispatchWork / (plan.groupWork * plan.strips), 1, gpu::kTileBlocks));
+        for (; push.firstGroup < plan.groups(); push.firstGroup += slice)
+            pass.dispatchIndirect(
+                kernels::conv_channels, conv.tiles->arguments,
+                tileArguments(1, std::min(slice, plan.groups() - push.firstGroup)), push,
+                {from, from, packed, parameters, epilogue.saved, epilogue.saved, tiles, into, into},
+                constants);
+        return done;
+    }
+    const std::uint32_t across = result.desc.w / tile.columns;
+    const std::uint32_t down = result.desc.n * divideUp(result.desc.h, tile.rows);
+    const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
+        kDispatchWork / (plan.groupWork * plan.groups() * across * tile.rows), 1, kMaxGroups));
+    for (std::uint32_t& first = push.firstStrip; first < down; first += slice)
+        pass.dispatch(
+            kernels::conv_channels,
+            {plan.groups() * kConvLanes, across, std::min(slice, down - first)}, push,
+            {from, from, packed, parameters, epilogue.saved, epilogue.saved, packed, into, into},
+            constants);
+    return done;
+}
+
+} // namespace strandlight
