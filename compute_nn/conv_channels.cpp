@@ -39,9 +39,8 @@ std::optional<RowTile> channelTileFor(const RenderGraph& graph, const ConvPass& 
     const bool strideOne = conv.stride == Extent2{1, 1};
     const RowTile* found = findChannelTile(
         graph.context().cpuForms(), {conv.transposed && !strideOne, conv.kernel, conv.stride});
-    if (!found || shuffleFlag(graph) == 0 || result.element != Element::Float ||
-        conv.backward.accumulate || source.w % 4 != 0 || to.width % 8 != 0 || to.offset % 8 != 0 ||
-        to.imageStride % 8 != 0)
+    if (!found || result.element != Element::Float || conv.backward.accumulate ||
+        source.w % 4 != 0 || to.width % 8 != 0 || to.offset % 8 != 0 || to.imageStride % 8 != 0)
         return std::nullopt;
     RowTile tile = *found;
     tile.channels = result.desc.c % 24 == 0 ? 24 : result.desc.c > 8 ? 16 : 8;

@@ -71,6 +71,41 @@ WeightForm quadForm(std::uint32_t shuffleFlag, const Correlation& c)
     return form;
 }
 
+bool hasPointForm(const Correlation& c)
+{
+    return wholeQuads(c.small) && wholeQuads(c.large) && c.kernel == Extent2{3, 3} &&
+           c.stride == Extent2{1, 1} && c.padding.h <= 2 && c.padding.w <= 2 &&
+           std::max(c.small.desc.c, c.large.desc.c) >= 8;
+}
+
+WeightForm pointForm(std::uint32_t shuffleFlag, const Correlation& c)
+{
+    WeightForm form;
+    // Lanes are channels: let the tensor of more be the small one. Its like by the kernel turned
+    // about, the other way round.
+    form.turned = c.small.desc.c < 8 && c.large.desc.c > c.small.desc.c;
+    const TensorDesc& small = form.turned ? c.large.desc : c.small.desc;
+    const TensorDesc& large = form.turned ? c.small.desc : c.large.desc;
+    const std::uint32_t channelVectors = small.c > kConvLanes ? 2 : 1;
+    constexpr std::uint32_t kLarge = 4;                         // channels b of an invocation
+    constexpr std::uint32_t kColumns = 8 * kConvLanes / kLarge; // of a turn
+    const std::uint32_t pairs = small.n * divideUp(small.h, 2);
+    const std::uint32_t turnsPerRow = divideUp(small.w, kColumns);
+
+    form.blob = &kernels::conv_weight_points;
+    form.constants = {channelVectors, kLarge, form.turned ? 2 - c.padding.h : c.padding.h,
+                      form.turned ? 2 - c.padding.w : c.padding.w, shuffleFlag};
+    form.tilesA = divideUp(small.c, kConvLanes * channelVectors);
+    form.tilesB = divideUp(large.c, kLarge);
+    // About 100 turns: what the tiles of a strip share fits a core's own cache.
+    form.stripLength = std::clamp(100 / turnsPerRow, 1u, pairs); // pairs of rows
+    form.strips = divideUp(pairs, form.stripLength);
+    form.stripWork = std::uint64_t(form.stripLength) * turnsPerRow * kColumns * form.tilesA *
+                     kConvLanes * channelVectors * form.tilesB * kLarge * 9;
+    form.unitTurns = turnsPerRow;
+    return form;
+}
+
 // Sums that a thread of conv_weight_tile.comp keeps: kWeightTileChannels times the kernel's width.
 constexpr std::uint32_t kTileKernelWidth = 8;
 
@@ -121,6 +156,8 @@ bool hasTileForm(const Correlation& c)
 
 WeightForm weightForm(bool cpu, std::uint32_t shuffleFlag, const Correlation& c)
 {
+    if (cpu && hasPointForm(c))
+        return pointForm(shuffleFlag, c);
     if (cpu)
         return hasQuadForm(c) ? quadForm(shuffleFlag, c) : generalForm(shuffleFlag, c);
     return hasTileForm(c) ? tileForm(c) : generalForm(shuffleFlag, c);

@@ -28,6 +28,7 @@ struct WeightForm
     std::uint32_t unitTurns = 1;   // at most, of the kernel's loop
     std::uint32_t groupSize = 8;   // threads of a workgroup
     std::uint64_t stripWork = 1;   // multiply-adds of a strip, dead ones too
+    bool turned = false; // small and large change places, the last tap comes first (stride 1)
 };
 
 // `cpu` as Context::cpuForms(), `shuffleFlag` as conv_work.hpp has it.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "compute_nn/conv_passes.hpp"
 #include "compute_nn/conv_weight_forms.hpp"
@@ -69,8 +70,8 @@ BufferId addBoundCorrelationPass(RenderGraph& graph, std::string_view name,
     const TensorId& large = correlation.large;
     STRANDLIGHT_ASSERT_EQ(small.desc.n, large.desc.n);
     STRANDLIGHT_ASSERT(small.element == Element::Float && large.element == Element::Float);
-    const std::uint32_t elements =
-        small.desc.c * large.desc.c * correlation.kernel.h * correlation.kernel.w;
+    const std::uint32_t taps = correlation.kernel.h * correlation.kernel.w;
+    const std::uint32_t elements = small.desc.c * large.desc.c * taps;
     WeightForm form = weightForm(graph.context().cpuForms(), shuffleFlag(graph), correlation);
     const std::uint32_t longer = divideUp(form.strips, bindableStrips(graph, elements));
     form.stripLength *= longer;
@@ -96,14 +97,24 @@ BufferId addBoundCorrelationPass(RenderGraph& graph, std::string_view name,
                              .pixels = small.desc.n * small.desc.pixels(),
                              .stripLength = form.stripLength,
                              .firstStrip = 0,
-                             .stripStride = strips.stride};
+                             .stripStride = strips.stride,
+                             .strideSmall = large.desc.c * taps,
+                             .strideLarge = taps,
+                             .turned = form.turned};
+    if (form.turned) {
+        push.pixels = large.desc.n * large.desc.pixels();
+        std::swap(push.small, push.large);
+        std::swap(push.smallChannels, push.largeChannels);
+        std::swap(push.strideSmall, push.strideLarge);
+    }
     const std::uint32_t slice =
         std::uint32_t(std::clamp<std::uint64_t>(kDispatchWork / form.stripWork, 1, kMaxGroups));
     for (; push.firstStrip < form.strips; push.firstStrip += slice)
         pass.dispatch(*form.blob,
                       {form.tilesB * form.groupSize, form.tilesA,
                        std::min(slice, form.strips - push.firstStrip)},
-                      push, {a, b, strips.buffer}, form.constants);
+                      push, {form.turned ? b : a, form.turned ? a : b, strips.buffer},
+                      form.constants);
     addStrips(graph, pass, name, strips, to, gradient.weightOffset);
     return to;
 }

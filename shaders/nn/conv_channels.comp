@@ -17,12 +17,13 @@
 
 layout(constant_id = 12) const uint ROWS = 8; // of the tile
 
-const uint INPUT_ROWS = (ROWS - 1) * SH + KH;             // that it reads
-const uint WH = (INPUT_ROWS + kLanes - 1) / kLanes;       // of a lane: each eighth
+const bool SHUFFLE = (FLAGS & kConvShuffle) != 0;
+const uint INPUT_ROWS = (ROWS - 1) * SH + KH;    // that it reads,
+const uint ROW_STEP = SHUFFLE ? kLanes : 1;      // and of which a lane loads each eighth; or all
+const uint WH = (INPUT_ROWS + ROW_STEP - 1) / ROW_STEP;
 const uint WW = (NX - 1) * SW + KW;
 const uint LEFT = PW;
 
-#define ROW_STEP kLanes
 #include "nn/conv_window.glsl"
 
 const uint VECTORS = K / kLanes;                 // of channels
@@ -30,6 +31,12 @@ const uint SUM_BLOCKS = VECTORS * ROWS;          // [vector][row]
 const uint WEIGHT_LOADS = (U * VECTORS * TAPS + 3) / 4;
 
 #include "nn/conv_sums.glsl"
+
+// What the lane that loaded the row has as x[row / ROW_STEP].
+float ofRow(float x, uint row)
+{
+    return SHUFFLE ? subgroupShuffle(x, row % ROW_STEP) : x;
+}
 
 vec4 weights[WEIGHT_LOADS]; // of a turn: [input channel][vector][tap] of this lane
 
@@ -50,7 +57,7 @@ void addTaps(uint u)
     float pixel[INPUT_ROWS][WW];
     [[unroll]] for (uint row = 0; row < INPUT_ROWS; ++row)
         [[unroll]] for (uint x = 0; x < WW; ++x)
-            pixel[row][x] = subgroupShuffle(window[row / kLanes][x], row % kLanes);
+            pixel[row][x] = ofRow(window[row / ROW_STEP][x], row);
     [[unroll]] for (uint i = 0; i < SUM_BLOCKS; ++i)
         [[unroll]] for (uint t = 0; t < TAPS; ++t)
             [[unroll]] for (uint n = 0; n < NX; ++n)
@@ -67,7 +74,7 @@ void addPoints(uint u)
             mine[g] = pointsOfWindow(g, i / COLUMN_TILES, i % COLUMN_TILES);
         [[unroll]] for (uint row = 0; row < INPUT_ROWS; ++row)
             [[unroll]] for (uint j = 0; j < POINTS; ++j)
-                point[row][i / COLUMN_TILES][i % COLUMN_TILES][j] = subgroupShuffle(mine[row / kLanes].at[j], row % kLanes);
+                point[row][i / COLUMN_TILES][i % COLUMN_TILES][j] = ofRow(mine[row / ROW_STEP].at[j], row);
     }
     [[unroll]] for (uint j = 0; j < POINTS; ++j)
         [[unroll]] for (uint row = 0; row < INPUT_ROWS; ++row)
@@ -99,7 +106,7 @@ void main()
     uint lane = gl_LocalInvocationID.x;
     Strip strip = tileOfGroup();
     Target target = targetOf(strip);
-    placeWindow(int(strip.row * SH + lane) - int(PH), int(strip.column * SW), strip.image);
+    placeWindow(int(strip.row * SH + (SHUFFLE ? lane : 0)) - int(PH), int(strip.column * SW), strip.image);
     clearSums();
 
     uint turns = push.inChannels / U;

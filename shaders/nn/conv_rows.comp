@@ -19,6 +19,7 @@
 const uint WH = KH;
 const uint WW = (NX - 1) * SW + KW;
 const uint LEFT = PW;
+const uint ROW_STEP = 1;
 
 #include "nn/conv_window.glsl"
 #include "nn/conv_strip.glsl"

@@ -26,6 +26,7 @@ const uint ROWS = SH / PHASES; // of the result
 const uint ROW_TAPS = KH / PHASES;
 const uint WH = PHASES == SH ? ROW_TAPS : UP + 1 + DOWN;
 const uint WW = LEFT + NX + RIGHT;
+const uint ROW_STEP = 1;
 
 #include "nn/conv_window.glsl"
 

@@ -1,6 +1,6 @@
-// The window of input pixels that a strip reads of one channel: WH rows from `firstRow` on, WW columns from `left` before
-// `column` on. For a kernel with the constants WH, WW and LEFT, behind conv_rows.glsl; `column` is a multiple of four
-// under kConvQuads.
+// The window of input pixels that an invocation loads of one channel: WH rows, each ROW_STEP-th from `firstRow` on, and WW
+// columns from LEFT before `column` on. For a kernel with these constants, behind conv_rows.glsl; `column` is a multiple of
+// four under kConvQuads.
 //
 // Addresses are kept inside the image and what lies outside is replaced by zero: a select, not a product, for NaN must
 // not leak in.
@@ -10,10 +10,6 @@
 layout(binding = 0, SOURCE_TEXEL) uniform readonly imageBuffer inputTensor; // [N,C,H,W]
 layout(binding = 1, SOURCE_QUAD) uniform readonly imageBuffer inputQuads;
 
-// Rows of the image between neighbouring rows of the window.
-#ifndef ROW_STEP
-#define ROW_STEP 1
-#endif
 const uint SPAN = (FLAGS & kConvQuads) != 0 ? 4 : 1;     // columns of a load
 const uint BEFORE = (LEFT + SPAN - 1) / SPAN;            // loads of a row before `column`
 const uint SKIP = BEFORE * SPAN - LEFT;                  // columns loaded before the window's first

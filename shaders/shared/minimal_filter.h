@@ -70,6 +70,33 @@ STRANDLIGHT_FN vec4 minimalResults(uint taps, MinimalPoints m)
                 a * a * a * oddA + b * b * b * oddB + m.at[4]);
 }
 
+// The other way about, for the gradient of three weights: y[k] = sum over i of s[i] d[i + k] over the four pixels of a
+// tile. Its inputs d are taken to the points by minimalInputs(3, d), the pixels s by this, without the points' scales.
+STRANDLIGHT_FN MinimalPoints minimalFilter(vec4 s)
+{
+    float a = minimalA(3u), b = kMinimalB;
+    float evenA = s.x + a * a * s.z, oddA = a * (s.y + a * a * s.w);
+    float evenB = s.x + b * b * s.z, oddB = b * (s.y + b * b * s.w);
+    MinimalPoints u;
+    u.at[0] = evenA + oddA;
+    u.at[1] = evenA - oddA;
+    u.at[2] = evenB + oddB;
+    u.at[3] = evenB - oddB;
+    u.at[4] = s.w;
+    u.at[5] = s.x;
+    return u;
+}
+
+// From the products of both, or their sums; the points' scales are applied here.
+STRANDLIGHT_FN vec3 minimalTaps(MinimalPoints m)
+{
+    float a = minimalA(3u), b = kMinimalB;
+    float scaleA = 1.0f / (2.0f * a * a * (a * a - b * b)), scaleB = 1.0f / (2.0f * b * b * (b * b - a * a));
+    float evenA = scaleA * (m.at[0] + m.at[1]), oddA = scaleA * (m.at[0] - m.at[1]);
+    float evenB = scaleB * (m.at[2] + m.at[3]), oddB = scaleB * (m.at[2] - m.at[3]);
+    return vec3(evenA + evenB + m.at[5] / (a * a * b * b), a * oddA + b * oddB, a * a * evenA + b * b * evenB + m.at[4]);
+}
+
 STRANDLIGHT_SHARED_END
 
 #endif

@@ -129,6 +129,9 @@ struct ConvWeightPush
     uint stripLength; // what one invocation or workgroup sums, in units of its kernel
     uint firstStrip;  // of this dispatch
     uint stripStride; // floats from strip to strip
+    uint strideSmall; // of conv_weight_points.comp: floats from channel to channel
+    uint strideLarge;
+    uint turned;      // of the same: the last tap comes first
 };
 
 struct ChannelSumPush
@@ -257,7 +260,7 @@ STRANDLIGHT_SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(strandlight::gpu::ConvPush) == 104);
 static_assert(sizeof(strandlight::gpu::ConvRowsPush) == 68);
-static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 80);
+static_assert(sizeof(strandlight::gpu::ConvWeightPush) == 92);
 #endif
 
 #endif

@@ -61,6 +61,22 @@ inline std::vector<ConvCase> quadConvCases()
     };
 }
 
+// Layers whose lanes are output channels on CPU devices (compute_nn/conv_channels.hpp), and weight
+// gradients at points: channels around the vectors of eight, rows around the tiles, few channels on
+// either side.
+inline std::vector<ConvCase> channelConvCases()
+{
+    return {
+        makeConvCase({1, 5, 6, 16}, 16, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({2, 3, 11, 24}, 24, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 8, 12, 40}, 7, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 14, 14, 12}, 29, {3, 3}, {1, 1}, {0, 2}, {0, 0}), // to 12x14 and 16x10
+        makeConvCase({3, 33, 5, 8}, 2, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 3, 12, 32}, 16, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
+        makeConvCase({2, 7, 10, 16}, 31, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
+    };
+}
+
 // The shapes that have sliding-window kernels (compute_nn/conv_tiles.cpp), at widths around their
 // tiles.
 inline std::vector<ConvCase> rowConvCases()

@@ -36,7 +36,9 @@ void addSubgroupCases(std::vector<OpCase>& cases)
 {
     for (const ConvCase& c : {makeConvCase({2, 6, 9, 7}, 13, {3, 3}, {2, 2}, {1, 1}, {0, 0}),
                               makeConvCase({1, 5, 6, 23}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
-                              makeConvCase({1, 5, 3, 12}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0})})
+                              makeConvCase({1, 5, 3, 12}, 11, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+                              makeConvCase({1, 5, 6, 16}, 16, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+                              makeConvCase({1, 3, 12, 32}, 8, {4, 4}, {2, 2}, {1, 1}, {0, 0})})
         addShape(cases, c, true, true, 3);
 }
 
@@ -63,6 +65,8 @@ void addConvCases(std::vector<OpCase>& cases)
     for (const ConvCase& c : rowConvCases())
         add(c);
     for (const ConvCase& c : quadConvCases())
+        add(c);
+    for (const ConvCase& c : channelConvCases())
         add(c);
     // Many small images, as the encoder has them; and more pixels than one strip of the weight
     // gradient.

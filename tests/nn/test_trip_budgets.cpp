@@ -50,7 +50,8 @@ TEST_CASE("trip budget: SG mixture at its largest number of lobes and of directi
         const std::vector<float> along = {0.0f, 0.0f, 1.0f};
         const TensorId decoded =
             addSgDecodePass(graph, desc, uploadTensor(graph, "raw", desc.raw(), raw));
-        return sgMixtureForward(graph, desc, decoded, graph.uploadBuffer("d", std::span<const float>(along)),
+        return sgMixtureForward(graph, desc, decoded,
+                                graph.uploadBuffer("d", std::span<const float>(along)),
                                 createTensor(graph, "rgb", {1, 3, 1, 1}));
     };
     const std::uint32_t lobes = largestAccepted(8, 1u << 20, forward);
@@ -69,9 +70,10 @@ TEST_CASE("trip budget: SG mixture at its largest number of lobes and of directi
         std::vector<float> along(directions * 3, 0.0f);
         for (std::uint32_t d = 0; d < directions; ++d)
             along[d * 3 + 2] = 1.0f;
-        return sgMixtureBackward(
-            g, desc, uploadTensor(g, "raw", desc.raw(), raw), g.uploadBuffer("d", std::span<const float>(along)),
-            uploadTensor(g, "dOut", out, ones), createTensor(g, "dRaw", desc.raw()));
+        return sgMixtureBackward(g, desc, uploadTensor(g, "raw", desc.raw(), raw),
+                                 g.uploadBuffer("d", std::span<const float>(along)),
+                                 uploadTensor(g, "dOut", out, ones),
+                                 createTensor(g, "dRaw", desc.raw()));
     };
     const std::uint32_t directions = largestAccepted(8, 1u << 20, backward);
     RenderGraph second(context());
