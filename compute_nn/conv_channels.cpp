@@ -22,7 +22,7 @@ bool fillsTile(std::uint32_t count, std::uint32_t tile)
 // With stride 1 the transpose is a convolution by the kernel turned about.
 ConvPass asConvolution(ConvPass conv)
 {
-    if (conv.transposed) {
+    if (conv.transposed && conv.stride == Extent2{1, 1}) {
         conv.transposed = false;
         conv.padding = {conv.kernel.h - 1 - conv.padding.h, conv.kernel.w - 1 - conv.padding.w};
         conv.turned = true;
@@ -39,12 +39,13 @@ std::optional<RowTile> channelTileFor(const RenderGraph& graph, const ConvPass& 
     const bool strideOne = conv.stride == Extent2{1, 1};
     const RowTile* found = findChannelTile(
         graph.context().cpuForms(), {conv.transposed && !strideOne, conv.kernel, conv.stride});
-    if (!found || result.element != Element::Float || conv.backward.accumulate ||
-        source.w % 4 != 0 || to.width % 8 != 0 || to.offset % 8 != 0 || to.imageStride % 8 != 0)
+    if (!found || result.element != Element::Float || source.w % 4 != 0 || to.width % 8 != 0 ||
+        to.offset % 8 != 0 || to.imageStride % 8 != 0)
         return std::nullopt;
     RowTile tile = *found;
     tile.channels = result.desc.c % 24 == 0 ? 24 : result.desc.c > 8 ? 16 : 8;
-    if (!fillsTile(result.desc.c, tile.channels) || !fillsTile(result.desc.h, tile.rows))
+    const std::uint32_t scale = conv.transposed && !strideOne ? conv.stride.h : 1;
+    if (!fillsTile(result.desc.c, tile.channels) || !fillsTile(result.desc.h, tile.rows * scale))
         return std::nullopt;
     return tile;
 }
@@ -56,7 +57,7 @@ TensorId addChannelConvPass(RenderGraph& graph, std::string_view name, const Con
     const ConvPass conv = asConvolution(asGiven);
     RowTile tile = found;
     if (conv.tiles)
-        tile.rows = gpu::kTileSide;
+        tile.rows = gpu::kTileSide / (conv.transposed ? conv.stride.h : 1);
     const RowPlan plan(conv, tile, source.desc, result.desc);
     STRANDLIGHT_ASSERT(wholeQuads(source) && wholeQuads(result));
     checkTripBudget("conv_channels", plan.turns + 1);
@@ -75,6 +76,8 @@ TensorId addChannelConvPass(RenderGraph& graph, std::string_view name, const Con
         epilogue.flags | gpu::kConvQuads | (conv.tiles ? gpu::kConvTiles : 0);
     std::vector<std::uint32_t> constants = rowConstants(conv, plan, kConvLanes, flags);
     constants.push_back(tile.rows);
+    const KernelBlob& kernel =
+        conv.transposed ? kernels::conv_transpose_channels : kernels::conv_channels;
 
     const TensorId done = result.as(std::get<BufferId>(into.resource));
     if (conv.tiles) {
@@ -84,22 +87,23 @@ TensorId addChannelConvPass(RenderGraph& graph, std::string_view name, const Con
             kDispatchWork / (plan.groupWork * plan.strips), 1, gpu::kTileBlocks));
         for (; push.firstGroup < plan.groups(); push.firstGroup += slice)
             pass.dispatchIndirect(
-                kernels::conv_channels, conv.tiles->arguments,
+                kernel, conv.tiles->arguments,
                 tileArguments(1, std::min(slice, plan.groups() - push.firstGroup)), push,
-                {from, from, packed, parameters, epilogue.saved, epilogue.saved, tiles, into, into},
+                {from, from, packed, parameters, epilogue.saved, epilogue.saved, tiles, into, into,
+                 into},
                 constants);
         return done;
     }
-    const std::uint32_t across = result.desc.w / tile.columns;
-    const std::uint32_t down = result.desc.n * divideUp(result.desc.h, tile.rows);
+    const std::uint32_t across = divideUp(result.desc.w, tile.columns * plan.scale.w);
+    const std::uint32_t down = result.desc.n * divideUp(result.desc.h, tile.rows * plan.scale.h);
     const std::uint32_t slice = std::uint32_t(std::clamp<std::uint64_t>(
         kDispatchWork / (plan.groupWork * plan.groups() * across * tile.rows), 1, kMaxGroups));
     for (std::uint32_t& first = push.firstStrip; first < down; first += slice)
-        pass.dispatch(
-            kernels::conv_channels,
-            {plan.groups() * kConvLanes, across, std::min(slice, down - first)}, push,
-            {from, from, packed, parameters, epilogue.saved, epilogue.saved, packed, into, into},
-            constants);
+        pass.dispatch(kernel, {plan.groups() * kConvLanes, across, std::min(slice, down - first)},
+                      push,
+                      {from, from, packed, parameters, epilogue.saved, epilogue.saved, packed, into,
+                       into, into},
+                      constants);
     return done;
 }
 

@@ -28,20 +28,20 @@ bool hasQuads(const ConvPass& conv, const RowTile& tile, const TensorId& source,
 // Every store of eight neighbours is one of the result's aligned octets; for devices whose forms
 // are a CPU's (conv_rows.glsl).
 bool hasOctets(const RenderGraph& graph, const ConvPass& conv, const RowTile& tile,
-               const TensorId& result)
+               const TensorId& source, const TensorId& result)
 {
     const std::uint32_t stored = tile.columns * (conv.transposed ? conv.stride.w : 1);
     const gpu::TensorView view = result.view();
-    return graph.context().cpuForms() && result.element == Element::Float &&
-           !conv.backward.accumulate && stored % 8 == 0 && view.offset % 8 == 0 &&
+    return graph.context().cpuForms() && source.element == Element::Float &&
+           result.element == Element::Float && stored % 8 == 0 && view.offset % 8 == 0 &&
            view.imageStride % 8 == 0 && view.width % 8 == 0;
 }
 
-// The kernel for these tensors' elements; `octets`: of floats, stored by eights.
+// The kernel for these tensors' elements; `octets`: stored by eights.
 const KernelBlob& kernelFor(const ConvPass& conv, const TensorId& source, const TensorId& result,
                             bool octets)
 {
-    if (octets && source.element == Element::Float)
+    if (octets)
         return conv.transposed ? kernels::conv_transpose_rows_wide : kernels::conv_rows_wide;
     return conv.transposed ? variantFor(source, result, kernels::conv_transpose_rows,
                                         kernels::conv_transpose_rows_half,
@@ -74,12 +74,13 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     const std::uint32_t flags =
         epilogue.flags | (conv.tiles ? gpu::kConvTiles : 0) | (quads ? gpu::kConvQuads : 0);
     const std::vector<std::uint32_t> constants = rowConstants(conv, plan, kGroup, flags);
-    const KernelBlob& kernel =
-        kernelFor(conv, source, result, quads && hasOctets(graph, conv, tile, result));
+    const bool octets = quads && hasOctets(graph, conv, tile, source, result);
+    const KernelBlob& kernel = kernelFor(conv, source, result, octets);
     // Without quads nothing reads these two, and the tensors may not be whole texels.
     const Binding fromQuads = quads ? from : packed;
     const Binding savedQuads = quads ? epilogue.saved : packed;
     const Binding into = result.binding(to);
+    const Binding last = octets ? into : epilogue.guard; // heldQuads, or the guard
 
     if (conv.tiles) { // cut by groups, as if all tiles were active
         STRANDLIGHT_ASSERT_EQ(result.desc.n, 1u);
@@ -94,7 +95,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
                                                 std::min(slice, plan.groups() - push.firstGroup)),
                                   push,
                                   {from, fromQuads, packed, parameters, epilogue.saved, savedQuads,
-                                   tiles, into, into, epilogue.guard},
+                                   tiles, into, into, last},
                                   constants);
         return result.as(to);
     }
@@ -108,7 +109,7 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
         pass.dispatch(kernel, {plan.groups() * kGroup, divideUp(push.endStrip - first, kGroup), 1},
                       push,
                       {from, fromQuads, packed, parameters, epilogue.saved, savedQuads, packed,
-                       into, into, epilogue.guard},
+                       into, into, last},
                       constants);
     }
     return result.as(to);

@@ -7,7 +7,7 @@
 // active tiles instead.
 //
 // Under kConvQuads rows are whole texels of four floats, of which one load costs a CPU device little more than one float.
-// With RESULT_WIDE eight floats are stored at once (wide_store.glsl); those variants do not accumulate.
+// With RESULT_WIDE eight floats are stored at once (wide_store.glsl), and what kConvAccumulate adds is loaded by quads.
 #ifndef STRANDLIGHT_NN_CONV_ROWS_GLSL
 #define STRANDLIGHT_NN_CONV_ROWS_GLSL
 
@@ -48,6 +48,7 @@ layout(binding = 6, r32ui) uniform readonly uimageBuffer tiles; // kConvTiles: x
 layout(binding = 7, scalar) buffer Result { RESULT_ELEMENT result[]; };  // [N,K',H',W']
 #ifdef RESULT_WIDE
 layout(binding = 8, scalar) writeonly buffer ResultOctets { u64vec4 resultOctets[]; };
+layout(binding = 9, rgba32f) uniform readonly imageBuffer heldQuads; // the result, before it is stored
 #else
 layout(binding = 8, scalar) buffer ResultQuads { RESULT_QUAD resultQuads[]; };
 #endif
@@ -156,6 +157,15 @@ void storeFloat(Target to, uint channel, uint y, uint x, float value)
     result[to.first + inImage] = RESULT_ELEMENT(guarded(sign > 0.0 ? value : value * to.slope));
 }
 
+#ifdef RESULT_WIDE
+vec4 accumulated(Target to, uint inImage, vec4 value)
+{
+    if ((FLAGS & kConvAccumulate) != 0)
+        value += imageLoad(heldQuads, int((to.first + inImage) / 4));
+    return value;
+}
+#endif
+
 // Of four neighbouring values, the first at `inImage`.
 vec4 activated(Target to, uint inImage, vec4 value)
 {
@@ -173,7 +183,8 @@ void storeOctet(Target to, uint channel, uint y, uint x, vec4 left, vec4 right)
         return;
     uint inImage = channel * to.plane + y * to.width + x;
     resultOctets[(to.first + inImage) / 8] =
-        asPairs(activated(to, inImage, left), activated(to, inImage + 4, right));
+        asPairs(activated(to, inImage, accumulated(to, inImage, left)),
+                activated(to, inImage + 4, accumulated(to, inImage + 4, right)));
 }
 #else
 // Four columns from x on, of which all exist or none.
