@@ -92,9 +92,12 @@ WeightForm pointForm(std::uint32_t shuffleFlag, const Correlation& c)
     const std::uint32_t pairs = small.n * divideUp(small.h, 2);
     const std::uint32_t turnsPerRow = divideUp(small.w, kColumns);
 
+    const bool whole = small.w % kColumns == 0 && small.h % 2 == 0 && small.w == large.w;
+
     form.blob = &kernels::conv_weight_points;
     form.constants = {channelVectors, kLarge, form.turned ? 2 - c.padding.h : c.padding.h,
-                      form.turned ? 2 - c.padding.w : c.padding.w, shuffleFlag};
+                      form.turned ? 2 - c.padding.w : c.padding.w,
+                      shuffleFlag | (whole ? gpu::kConvWhole : 0)};
     form.tilesA = divideUp(small.c, kConvLanes * channelVectors);
     form.tilesB = divideUp(large.c, kLarge);
     // About 100 turns: what the tiles of a strip share fits a core's own cache.

@@ -30,6 +30,7 @@ layout(binding = 2, scalar) writeonly buffer Strips { float strips[]; }; // [str
 layout(push_constant, scalar) uniform Push { ConvWeightPush push; };
 
 const uint kLanes = 8;
+const bool WHOLE = (FLAGS & kConvWhole) != 0;
 const bool SHUFFLE = (FLAGS & kConvShuffle) != 0;
 const uint WINDOWS = SHUFFLE ? 1 : kLanes; // of a lane, of the eight of a turn
 const uint HALVES = kLanes / B;            // windows of eight columns in a turn, each with two tiles
@@ -125,7 +126,7 @@ void main()
             [[unroll]] for (uint tile = 0; tile < TILES; ++tile) {
                 MinimalPoints rows[2];
                 [[unroll]] for (uint r = 0; r < 2; ++r) {
-                    bool inside = x + int(tile) < smallWidth && y + int(r) < smallHeight;
+                    bool inside = WHOLE || (x + int(tile) < smallWidth && y + int(r) < smallHeight);
                     vec4 quad = imageLoad(smallQuads, inside ? channelAddress[a] + smallRow + int(tile) + int(r) * smallWidth : 0);
                     rows[r] = minimalFilter(inside ? quad : vec4(0.0));
                 }
@@ -139,7 +140,8 @@ void main()
                 int at = windowAddress[w] + n * largeImageStride + iy * largeWidth + x;
                 vec4 quads[QUADS];
                 [[unroll]] for (uint q = 0; q < QUADS; ++q) {
-                    bool inside = uint(iy) < uint(largeHeight) && uint(x + windowX[w] + int(q)) < uint(largeWidth);
+                    bool inColumns = WHOLE && q >= LEFT && q < LEFT + 2; // those of the turn itself
+                    bool inside = uint(iy) < uint(largeHeight) && (inColumns || uint(x + windowX[w] + int(q)) < uint(largeWidth));
                     vec4 quad = imageLoad(largeQuads, inside ? at + int(q) : 0);
                     quads[q] = inside ? quad : vec4(0.0); // a select, not a product: NaN must not leak in
                 }

@@ -38,6 +38,19 @@ float nnExp2Negative(float y)
     return tiny ? 0.0 : value;
 }
 
+// Of four at once: each step of all before the next. One alone is a chain of a dozen operations that wait for each other.
+vec4 nnExp2Negative(vec4 y)
+{
+    precise vec4 shifted = y + 12582912.0;
+    precise vec4 k = shifted - 12582912.0;
+    vec4 f = y - k;
+    vec4 p = 1.0 + f * (0.6931469670639855 + f * (0.24022119722727053 + f * (0.05550713274200602 +
+             f * (0.009675541396042944 + f * 0.0013276471945264257))));
+    vec4 value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
+    bvec4 tiny = lessThanEqual(floatBitsToUint(y) - 0xc2c80001u, uvec4(0xff800000u - 0xc2c80001u));
+    return mix(value, vec4(0.0), tiny);
+}
+
 // ln(1 + x) for x >= 0: 1 + x = 2^k (1 + f), ln(1 + f) = 2 atanh(f / (2 + f)). For k = 0, f is x itself, so what the sum
 // 1 + x rounds away matters only where the logarithm is above 0.34.
 float nnLog1p(float x)

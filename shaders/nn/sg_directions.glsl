@@ -5,6 +5,27 @@
 
 vec3 direction[TILE];
 
+// What lobes are evaluated for at once, of a tile from j on: with TILE 1 four times the same, which costs no more than one.
+const uint AT_ONCE = TILE < 4 ? TILE : 4;
+
+struct Chords
+{
+    vec4 x, y, z; // direction - axis
+    vec4 squared;
+};
+
+Chords chordsTo(vec3 axis, uint j)
+{
+    vec3 a = direction[j] - axis, b = direction[(j + 1) % TILE] - axis;
+    vec3 c = direction[(j + 2) % TILE] - axis, d = direction[(j + 3) % TILE] - axis;
+    Chords chords;
+    chords.x = vec4(a.x, b.x, c.x, d.x);
+    chords.y = vec4(a.y, b.y, c.y, d.y);
+    chords.z = vec4(a.z, b.z, c.z, d.z);
+    chords.squared = chords.x * chords.x + chords.y * chords.y + chords.z * chords.z;
+    return chords;
+}
+
 void loadDirections(uint n, uint first)
 {
     int at = int(n * push.directionImageStride + first * 3);

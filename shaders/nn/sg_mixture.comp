@@ -84,9 +84,10 @@ void main()
             if (BLOCKS > 1)
                 loadLobes(n * push.lobes + block * LOBES);
             [[unroll]] for (uint l = 0; l < LOBES; ++l)
-                [[unroll]] for (uint j = 0; j < TILE; ++j) {
-                    vec3 chord = direction[j] - axis[l];
-                    sum[j] += amplitude[l] * nnExp2Negative(falloff[l] * dot(chord, chord));
+                [[unroll]] for (uint j = 0; j < TILE; j += AT_ONCE) {
+                    vec4 lobe = nnExp2Negative(falloff[l] * chordsTo(axis[l], j).squared);
+                    [[unroll]] for (uint i = 0; i < AT_ONCE; ++i)
+                        sum[j + i] += amplitude[l] * lobe[i];
                 }
         }
         store(n, first);

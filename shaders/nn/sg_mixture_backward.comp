@@ -75,7 +75,7 @@ void main()
     vec3 rawAxis[LOBES], axis[LOBES], rawAmplitude[LOBES], amplitude[LOBES];
     float axisLength[LOBES], rawSharpness[LOBES], sharpness[LOBES];
     vec3 dAxis[LOBES], dAmplitude[LOBES];
-    float dSharpness[LOBES];
+    float falloff[LOBES], dFalloff[LOBES]; // of -sharpness/2, the former for powers of two
     loadLobeValues(firstLobe);
     [[unroll]] for (uint l = 0; l < LOBES; ++l) {
         rawAxis[l] = vec3(lobeValues[7 * l], lobeValues[7 * l + 1], lobeValues[7 * l + 2]);
@@ -86,21 +86,24 @@ void main()
         sharpness[l] = decodeSharpness(rawSharpness[l]);
         amplitude[l] = vec3(nnSoftplus(rawAmplitude[l].x), nnSoftplus(rawAmplitude[l].y), nnSoftplus(rawAmplitude[l].z));
         dAxis[l] = dAmplitude[l] = vec3(0.0);
-        dSharpness[l] = 0.0;
+        falloff[l] = -0.5 * kLog2E * sharpness[l];
+        dFalloff[l] = 0.0;
     }
 
     for (uint first = 0; first < push.directions; first += TILE) {
         loadDirections(n, first);
         loadOut(n, first);
         [[unroll]] for (uint l = 0; l < LOBES; ++l)
-            [[unroll]] for (uint j = 0; j < TILE; ++j) {
-                vec3 chord = direction[j] - axis[l];
-                float squared = dot(chord, chord);
-                vec3 weighted = dOut[j] * nnExp2Negative(-0.5 * kLog2E * sharpness[l] * squared);
-                float dExponent = dot(weighted, amplitude[l]);
-                dAmplitude[l] += weighted;
-                dSharpness[l] -= 0.5 * squared * dExponent;
-                dAxis[l] += dExponent * chord;
+            [[unroll]] for (uint j = 0; j < TILE; j += AT_ONCE) {
+                Chords chords = chordsTo(axis[l], j);
+                vec4 lobe = nnExp2Negative(falloff[l] * chords.squared);
+                [[unroll]] for (uint i = 0; i < AT_ONCE; ++i) {
+                    vec3 weighted = dOut[j + i] * lobe[i];
+                    float dExponent = dot(weighted, amplitude[l]);
+                    dAmplitude[l] += weighted;
+                    dFalloff[l] += chords.squared[i] * dExponent;
+                    dAxis[l] += dExponent * vec3(chords.x[i], chords.y[i], chords.z[i]);
+                }
             }
     }
 
@@ -113,7 +116,7 @@ void main()
             dValues[7 * l + c] = tangent[c];
             dValues[7 * l + 4 + c] = dAmplitude[l][c] * nnSigmoid(rawAmplitude[l][c]);
         }
-        dValues[7 * l + 3] = dSharpness[l] * decodeSharpnessDerivative(rawSharpness[l], sharpness[l]);
+        dValues[7 * l + 3] = -0.5 * dFalloff[l] * decodeSharpnessDerivative(rawSharpness[l], sharpness[l]);
     }
     storeLobeGradients(firstLobe);
 }

@@ -27,6 +27,7 @@ STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; ne
 STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
 STRANDLIGHT_CONST(uint) kConvQuads = 32u;     // rows are whole texels of four floats
 STRANDLIGHT_CONST(uint) kConvContinue = 64u;  // sums begin with what the output holds; of kernels that fetch their input
+STRANDLIGHT_CONST(uint) kConvWhole = 256u;    // of conv_weight_points.comp: whole turns, and tensors of the same size
 STRANDLIGHT_CONST(uint) kConvMinimal = 128u;  // taps by minimal_filter.h: 2 or 3 of a row meet each phase of the stride
 
 // Side of a TileList's square tiles, in pixels of the layer's output: a multiple of the register tiles of the row kernels.
