@@ -28,8 +28,8 @@ const MixtureTile& mixtureTile(const RenderGraph& graph)
     return graph.context().cpuForms() ? kCpuTile : kGpuTile;
 }
 
-// Lobe evaluations of one dispatch: about 30 ms on two lavapipe threads.
-constexpr std::uint64_t kDispatchWork = 8'000'000;
+// Lobe evaluations of one dispatch: about 20 ms on two lavapipe threads.
+constexpr std::uint64_t kDispatchWork = 32'000'000;
 
 gpu::SgMixturePush pushOf(const SgMixtureDesc& desc)
 {

@@ -25,30 +25,54 @@ float nnExp(float x)
 // 2^y for y <= 0: exactly 1 at 0, minimax of degree 5 on [-1/2, 1/2], within 2.3e-7. 0 below -100: what it weights must not
 // become denormal, which a CPU device computes a hundred times slower. NaN passes through.
 const float kLog2E = 1.4426950408889634;
+const float kExp2C1 = 0.6931469670639855, kExp2C2 = 0.24022119722727053, kExp2C3 = 0.05550713274200602;
+const float kExp2C4 = 0.009675541396042944, kExp2C5 = 0.0013276471945264257;
 float nnExp2Negative(float y)
 {
     precise float shifted = y + 12582912.0; // 1.5 * 2^23: the nearest integer is in the lowest bits
     precise float k = shifted - 12582912.0;
     float f = y - k;
-    float p = 1.0 + f * (0.6931469670639855 + f * (0.24022119722727053 + f * (0.05550713274200602 +
-              f * (0.009675541396042944 + f * 0.0013276471945264257))));
+    float p = 1.0 + f * (kExp2C1 + f * (kExp2C2 + f * (kExp2C3 + f * (kExp2C4 + f * kExp2C5))));
     float value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
     // Whether y is in [-infinity, -100), by its bits: no NaN is.
     bool tiny = floatBitsToUint(y) - 0xc2c80001u <= 0xff800000u - 0xc2c80001u;
     return tiny ? 0.0 : value;
 }
 
-// Of four at once: each step of all before the next. One alone is a chain of a dozen operations that wait for each other.
+// The same of four or eight, each step of all before the next: alone it is a chain of a dozen operations that wait for
+// each other, and a CPU's scheduler holds no more than two of them.
+vec4 exp2Scaled(vec4 y, vec4 shifted, vec4 p)
+{
+    vec4 value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
+    bvec4 tiny = lessThanEqual(floatBitsToUint(y) - 0xc2c80001u, uvec4(0xff800000u - 0xc2c80001u));
+    return mix(value, vec4(0.0), tiny);
+}
 vec4 nnExp2Negative(vec4 y)
 {
     precise vec4 shifted = y + 12582912.0;
     precise vec4 k = shifted - 12582912.0;
     vec4 f = y - k;
-    vec4 p = 1.0 + f * (0.6931469670639855 + f * (0.24022119722727053 + f * (0.05550713274200602 +
-             f * (0.009675541396042944 + f * 0.0013276471945264257))));
-    vec4 value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
-    bvec4 tiny = lessThanEqual(floatBitsToUint(y) - 0xc2c80001u, uvec4(0xff800000u - 0xc2c80001u));
-    return mix(value, vec4(0.0), tiny);
+    vec4 p = 1.0 + f * (kExp2C1 + f * (kExp2C2 + f * (kExp2C3 + f * (kExp2C4 + f * kExp2C5))));
+    return exp2Scaled(y, shifted, p);
+}
+void hornerStep(vec4 f[2], float c, inout vec4 p[2])
+{
+    p[0] = c + f[0] * p[0];
+    p[1] = c + f[1] * p[1];
+}
+void nnExp2Negative(inout vec4 y[2])
+{
+    precise vec4 shifted0 = y[0] + 12582912.0, shifted1 = y[1] + 12582912.0;
+    precise vec4 k0 = shifted0 - 12582912.0, k1 = shifted1 - 12582912.0;
+    vec4 f[2] = vec4[2](y[0] - k0, y[1] - k1);
+    vec4 p[2] = vec4[2](vec4(kExp2C5), vec4(kExp2C5));
+    hornerStep(f, kExp2C4, p);
+    hornerStep(f, kExp2C3, p);
+    hornerStep(f, kExp2C2, p);
+    hornerStep(f, kExp2C1, p);
+    hornerStep(f, 1.0, p);
+    y[0] = exp2Scaled(y[0], shifted0, p[0]);
+    y[1] = exp2Scaled(y[1], shifted1, p[1]);
 }
 
 // ln(1 + x) for x >= 0: 1 + x = 2^k (1 + f), ln(1 + f) = 2 atanh(f / (2 + f)). For k = 0, f is x itself, so what the sum

@@ -5,8 +5,7 @@
 
 vec3 direction[TILE];
 
-// What lobes are evaluated for at once, of a tile from j on: with TILE 1 four times the same, which costs no more than one.
-const uint AT_ONCE = TILE < 4 ? TILE : 4;
+const uint OF_FOUR = TILE < 4 ? TILE : 4; // different directions of the four that a lobe is evaluated for at once
 
 struct Chords
 {
@@ -14,9 +13,10 @@ struct Chords
     vec4 squared;
 };
 
+// To four directions from j on; of a tile of one four times to the same, which costs no more than once.
 Chords chordsTo(vec3 axis, uint j)
 {
-    vec3 a = direction[j] - axis, b = direction[(j + 1) % TILE] - axis;
+    vec3 a = direction[j % TILE] - axis, b = direction[(j + 1) % TILE] - axis;
     vec3 c = direction[(j + 2) % TILE] - axis, d = direction[(j + 3) % TILE] - axis;
     Chords chords;
     chords.x = vec4(a.x, b.x, c.x, d.x);

@@ -84,9 +84,9 @@ void main()
             if (BLOCKS > 1)
                 loadLobes(n * push.lobes + block * LOBES);
             [[unroll]] for (uint l = 0; l < LOBES; ++l)
-                [[unroll]] for (uint j = 0; j < TILE; j += AT_ONCE) {
+                [[unroll]] for (uint j = 0; j < TILE; j += OF_FOUR) {
                     vec4 lobe = nnExp2Negative(falloff[l] * chordsTo(axis[l], j).squared);
-                    [[unroll]] for (uint i = 0; i < AT_ONCE; ++i)
+                    [[unroll]] for (uint i = 0; i < OF_FOUR; ++i)
                         sum[j + i] += amplitude[l] * lobe[i];
                 }
         }

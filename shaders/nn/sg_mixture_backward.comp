@@ -66,16 +66,31 @@ void storeLobeGradients(uint first)
 #endif
 }
 
+vec3 amplitude[LOBES];
+vec3 dAxis[LOBES], dAmplitude[LOBES];
+float dFalloff[LOBES]; // of -sharpness/2
+
+// What lobe l gets from four directions from j on.
+void addFour(uint l, uint j, Chords chords, vec4 lobe)
+{
+    [[unroll]] for (uint i = 0; i < OF_FOUR; ++i) {
+        vec3 weighted = dOut[j + i] * lobe[i];
+        float dExponent = dot(weighted, amplitude[l]);
+        dAmplitude[l] += weighted;
+        dFalloff[l] += chords.squared[i] * dExponent;
+        dAxis[l] += dExponent * vec3(chords.x[i], chords.y[i], chords.z[i]);
+    }
+}
+
 void main()
 {
     uint n = push.firstImage + gl_GlobalInvocationID.x;
     if (n >= push.images)
         return;
     uint firstLobe = n * push.lobes + gl_GlobalInvocationID.y * LOBES;
-    vec3 rawAxis[LOBES], axis[LOBES], rawAmplitude[LOBES], amplitude[LOBES];
+    vec3 rawAxis[LOBES], axis[LOBES], rawAmplitude[LOBES];
     float axisLength[LOBES], rawSharpness[LOBES], sharpness[LOBES];
-    vec3 dAxis[LOBES], dAmplitude[LOBES];
-    float falloff[LOBES], dFalloff[LOBES]; // of -sharpness/2, the former for powers of two
+    float falloff[LOBES]; // -sharpness/2, for powers of two
     loadLobeValues(firstLobe);
     [[unroll]] for (uint l = 0; l < LOBES; ++l) {
         rawAxis[l] = vec3(lobeValues[7 * l], lobeValues[7 * l + 1], lobeValues[7 * l + 2]);
@@ -94,16 +109,13 @@ void main()
         loadDirections(n, first);
         loadOut(n, first);
         [[unroll]] for (uint l = 0; l < LOBES; ++l)
-            [[unroll]] for (uint j = 0; j < TILE; j += AT_ONCE) {
-                Chords chords = chordsTo(axis[l], j);
-                vec4 lobe = nnExp2Negative(falloff[l] * chords.squared);
-                [[unroll]] for (uint i = 0; i < AT_ONCE; ++i) {
-                    vec3 weighted = dOut[j + i] * lobe[i];
-                    float dExponent = dot(weighted, amplitude[l]);
-                    dAmplitude[l] += weighted;
-                    dFalloff[l] += chords.squared[i] * dExponent;
-                    dAxis[l] += dExponent * vec3(chords.x[i], chords.y[i], chords.z[i]);
-                }
+            [[unroll]] for (uint j = 0; j < TILE; j += 8) {
+                Chords left = chordsTo(axis[l], j), right = chordsTo(axis[l], j + 4);
+                vec4 lobe[2] = vec4[2](falloff[l] * left.squared, falloff[l] * right.squared);
+                nnExp2Negative(lobe);
+                addFour(l, j, left, lobe[0]);
+                if (j + 4 < TILE)
+                    addFour(l, j + 4, right, lobe[1]);
             }
     }
 
