@@ -19,6 +19,11 @@ bool fillsTile(std::uint32_t count, std::uint32_t tile)
     return count * 5 >= divideUp(count, tile) * tile * 4;
 }
 
+std::uint32_t channelsOfTile(std::uint32_t channels)
+{
+    return channels % 24 == 0 ? 24 : channels > 8 ? 16 : 8;
+}
+
 // With stride 1 the transpose is a convolution by the kernel turned about.
 ConvPass asConvolution(ConvPass conv)
 {
@@ -32,20 +37,30 @@ ConvPass asConvolution(ConvPass conv)
 
 } // namespace
 
+bool fillsChannelTile(std::uint32_t channels)
+{
+    return fillsTile(channels, channelsOfTile(channels));
+}
+
 std::optional<RowTile> channelTileFor(const RenderGraph& graph, const ConvPass& conv,
                                       const TensorDesc& source, const TensorId& result)
 {
     const gpu::TensorView to = result.view();
     const bool strideOne = conv.stride == Extent2{1, 1};
+    // A transposed kernel that its padding covers has taps beyond any window; and a strided
+    // convolution reads too many rows for a square tile (the row kernel has the same bits).
+    if (conv.transposed ? conv.padding.h >= conv.kernel.h || conv.padding.w >= conv.kernel.w
+                        : conv.tiles && !strideOne)
+        return std::nullopt;
     const RowTile* found = findChannelTile(
         graph.context().cpuForms(), {conv.transposed && !strideOne, conv.kernel, conv.stride});
     if (!found || result.element != Element::Float || source.w % 4 != 0 || to.width % 8 != 0 ||
         to.offset % 8 != 0 || to.imageStride % 8 != 0)
         return std::nullopt;
     RowTile tile = *found;
-    tile.channels = result.desc.c % 24 == 0 ? 24 : result.desc.c > 8 ? 16 : 8;
+    tile.channels = channelsOfTile(result.desc.c);
     const std::uint32_t scale = conv.transposed && !strideOne ? conv.stride.h : 1;
-    if (!fillsTile(result.desc.c, tile.channels) || !fillsTile(result.desc.h, tile.rows * scale))
+    if (!fillsChannelTile(result.desc.c) || !fillsTile(result.desc.h, tile.rows * scale))
         return std::nullopt;
     return tile;
 }

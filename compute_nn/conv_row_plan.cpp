@@ -51,7 +51,7 @@ BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view nam
                                  .kernelHeight = conv.kernel.h,
                                  .kernelWidth = conv.kernel.w,
                                  .paddingHeight = conv.padding.h,
-                                 .columnPhases = plan.minimal ? conv.stride.w : 0,
+                                 .minimal = plan.minimal,
                                  .turned = conv.turned};
     const BufferId packed = pass.write(
         graph.createBuffer(std::string(name) + " weights", std::uint64_t(push.texels) * 16));

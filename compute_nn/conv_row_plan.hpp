@@ -30,12 +30,12 @@ struct RowPlan
           turns(source.c / turn), blocks(divideUp(result.c, tile.channels)),
           channels(divideUp(divideUp(result.c, blocks), tile.lanes) * tile.lanes),
           phases(tile.splitRows ? scale.h : 1), lanes(tile.lanes), minimal(tile.minimal),
-          rowTaps(minimal ? conv.stride.w * gpu::minimalPoints(conv.kernel.w / conv.stride.w)
-                          : conv.kernel.w),
-          columns(tile.columns), taps(conv.kernel.h * rowTaps / phases),
+          rowTaps(minimal ? gpu::kMinimalPoints : conv.kernel.w), columns(tile.columns),
+          taps(conv.kernel.h * rowTaps / phases),
           strips(result.n * divideUp(result.h, scale.h) *
                  divideUp(divideUp(result.w, scale.w), tile.columns)),
-          groupWork(std::uint64_t(taps) * source.c * channels * tile.columns)
+          groupWork(std::uint64_t(taps) * source.c * channels * tile.columns /
+                    (minimal ? gpu::kMinimalTile : 1))
     {
     }
     std::uint32_t groups() const { return blocks * phases; }

@@ -43,9 +43,10 @@ struct ChannelCase
 // stride 2 and three taps it was no faster.
 constexpr ChannelCase kCpuChannels[] = {
     {{kConv, {3, 3}, {1, 1}},
-     {.channels = 16, .columns = 8, .turn = 1, .minimal = true, .rows = 6, .lanes = 8}},
-    {{kConv, {4, 4}, {2, 2}}, {.channels = 16, .columns = 8, .turn = 1, .rows = 3, .lanes = 8}},
-    {{kTransposed, {4, 4}, {2, 2}}, {.channels = 16, .columns = 4, .turn = 1, .rows = 6, .lanes = 8}},
+     {.channels = 0, .columns = 8, .turn = 1, .minimal = true, .rows = 6, .lanes = 8}},
+    {{kConv, {4, 4}, {2, 2}}, {.channels = 0, .columns = 8, .turn = 1, .rows = 3, .lanes = 8}},
+    {{kTransposed, {4, 4}, {2, 2}},
+     {.channels = 0, .columns = 4, .turn = 1, .rows = 6, .lanes = 8}},
 };
 
 // Not measured: half the tile, so that the sums fit 255 registers with room to hide latency.

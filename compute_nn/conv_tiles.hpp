@@ -7,15 +7,15 @@
 
 namespace strandlight {
 
-// Register tile of conv_rows.comp, conv_transpose_rows.comp and, where channels are dealt to lanes,
-// conv_channels.comp.
+// Register tile of conv_rows.comp and conv_transpose_rows.comp; where channels are dealt to lanes,
+// of conv_channels.comp and conv_transpose_channels.comp.
 struct RowTile
 {
     std::uint32_t channels;  // at most; blocks of output channels are made equal
     std::uint32_t columns;   // of the grid (conv_rows.glsl)
     std::uint32_t turn;      // input channels per loop turn, at most
     bool splitRows = false;  // transposed: an invocation computes one row phase, not all
-    bool minimal = false;    // by minimal_filter.h: 2 or 3 taps of a row meet each phase
+    bool minimal = false;    // by minimal_filter.h: three taps a row, stride 1
     std::uint32_t rows = 1;  // of the grid
     std::uint32_t lanes = 1; // that share a block of channels
 };
@@ -34,7 +34,8 @@ struct RowShape
 const RowTile* findRowTile(bool cpu, const RowShape& shape, std::uint32_t gridWidth,
                            std::uint32_t images);
 
-// For conv_channels.comp, which takes a layer of such a shape if its size suits.
+// For conv_channels.comp and conv_transpose_channels.comp, which take a layer of such a shape if
+// its size suits (conv_channels.hpp, which also says of how many channels a tile is).
 const RowTile* findChannelTile(bool cpu, const RowShape& shape);
 
 } // namespace strandlight

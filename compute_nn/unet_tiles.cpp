@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <string>
 
+#include "compute_nn/conv_channels.hpp"
 #include "kernels/nn.gen.hpp"
+#include "shaders/shared/minimal_filter.h"
 
 namespace strandlight {
 
@@ -11,11 +13,12 @@ namespace {
 
 constexpr std::uint32_t kLanes = 256; // of tile_list.comp's one workgroup
 
-// A layer that the 3x3 convolution of stride 1 at the same level reads.
-TileReach aroundKernel(const TileReach& reader)
+// A layer that the 3x3 convolution of stride 1 to so many channels reads, at full size; at points
+// with all that the pixels' groups read.
+TileReach aroundKernel(const TileReach& reader, std::uint32_t channels)
 {
-    return {reader.level, reader.before + (1u << reader.level),
-            reader.after + (1u << reader.level)};
+    const std::uint32_t wider = fillsChannelTile(channels) ? gpu::kMinimalTile : 1;
+    return {reader.level, reader.before + wider, reader.after + wider};
 }
 
 // A layer below a transposed convolution of stride 2: pixel q makes pixels 2 q - padding onward, so
@@ -86,14 +89,14 @@ UNetReach unetReach(const UNetDesc& net)
     reach.up.resize(bottom);
     reach.skip.resize(bottom + 1);
     // Up: each layer is read by the one above it alone.
-    reach.up[0] = aroundKernel(reach.y);
+    reach.up[0] = aroundKernel(reach.y, net.out);
     for (std::uint32_t l = 1; l < bottom; ++l)
         reach.up[l] = belowDecoder(reach.up[l - 1], net.upKernel / 2 - 1);
     reach.skip[bottom] = belowDecoder(reach.up[bottom - 1], net.upKernel / 2 - 1);
     for (std::uint32_t l = bottom; l-- > 0;)
         reach.skip[l] = skipReach(reach, l, true);
     // What a head reads begins a pixel before the tile: no longer even.
-    reach.input = net.head > 0 ? aroundKernel(skipReach(reach, 0, false)) : reach.skip[0];
+    reach.input = net.head > 0 ? aroundKernel(skipReach(reach, 0, false), net.head) : reach.skip[0];
     return reach;
 }
 

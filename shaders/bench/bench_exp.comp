@@ -14,15 +14,19 @@ layout(push_constant, scalar) uniform Push { BenchLoopPush push; };
 void main()
 {
     uint id = gl_GlobalInvocationID.x;
-    float chain[kBenchExpChains];
+    const uint kOctets = kBenchExpChains / 8;
+    vec4 chain[kOctets][2];
     [[unroll]] for (uint k = 0; k < kBenchExpChains; ++k)
-        chain[k] = push.factor * float(k + 1) - float(id & 7u);
+        chain[k / 8][k / 4 % 2][k % 4] = push.factor * float(k + 1) - float(id & 7u);
     for (uint turn = 0; turn < push.turns; ++turn)
         [[unroll]] for (uint step = 0; step < kBenchExpUnroll; ++step)
-            [[unroll]] for (uint k = 0; k < kBenchExpChains; ++k)
-                chain[k] = -nnExp2Negative(chain[k]);
+            [[unroll]] for (uint k = 0; k < kOctets; ++k) {
+                nnExp2Negative(chain[k]);
+                chain[k][0] = -chain[k][0];
+                chain[k][1] = -chain[k][1];
+            }
     float sum = 0.0;
     [[unroll]] for (uint k = 0; k < kBenchExpChains; ++k)
-        sum += chain[k];
+        sum += chain[k / 8][k / 4 % 2][k % 4];
     result[id] = sum;
 }

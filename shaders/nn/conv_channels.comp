@@ -1,6 +1,6 @@
 // Convolution on a CPU device, lanes being output channels (conv_lanes.glsl).
 //
-// Sums are taken in the order of conv_rows.comp and have its bits.
+// Plain sums are taken in the order of conv_rows.comp and have its bits; those at points have the bits of hair_conv.comp.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -38,26 +38,23 @@ void addTaps(uint u)
 // Rows outermost: three rows of sums at a time fit the registers, and each point is loaded from the stack once.
 void addPoints(uint u)
 {
-    float point[INPUT_ROWS][SW][COLUMN_TILES][POINTS];
-    [[unroll]] for (uint i = 0; i < SW * COLUMN_TILES; ++i) {
-        uint phase = i / COLUMN_TILES, tile = i % COLUMN_TILES;
+    float point[INPUT_ROWS][COLUMN_TILES][kMinimalPoints];
+    [[unroll]] for (uint tile = 0; tile < COLUMN_TILES; ++tile) {
         MinimalPoints mine[WH];
         [[unroll]] for (uint g = 0; g < WH; ++g)
-            mine[g] = pointsOfWindow(g, phase, tile);
+            mine[g] = pointsOfWindow(g, tile);
         [[unroll]] for (uint row = 0; row < INPUT_ROWS; ++row)
-            [[unroll]] for (uint j = 0; j < POINTS; ++j)
-                point[row][phase][tile][j] = ofRow(mine[row / ROW_STEP].at[j], row);
+            [[unroll]] for (uint j = 0; j < kMinimalPoints; ++j)
+                point[row][tile][j] = ofRow(mine[row / ROW_STEP].at[j], row);
     }
-    [[unroll]] for (uint j = 0; j < POINTS; ++j)
+    [[unroll]] for (uint j = 0; j < kMinimalPoints; ++j)
         [[unroll]] for (uint row = 0; row < INPUT_ROWS; ++row)
             [[unroll]] for (uint ky = 0; ky < KH; ++ky)
-                if (row >= ky && (row - ky) % SH == 0 && (row - ky) / SH < TILE_ROWS)
-                    [[unroll]] for (uint i = 0; i < VECTORS * SW; ++i) {
-                        uint v = i / SW, phase = i % SW;
-                        float weight = weightOf(u, v, (ky * SW + phase) * POINTS + j);
-                        uint block = v * TILE_ROWS + (row - ky) / SH;
+                if (row >= ky && row - ky < TILE_ROWS)
+                    [[unroll]] for (uint v = 0; v < VECTORS; ++v) {
+                        float weight = weightOf(u, v, ky * kMinimalPoints + j);
                         [[unroll]] for (uint tile = 0; tile < COLUMN_TILES; ++tile)
-                            sum[block][tile * POINTS + j] += weight * point[row][phase][tile][j];
+                            sum[v * TILE_ROWS + row - ky][tile * kMinimalPoints + j] += weight * point[row][tile][j];
                     }
 }
 

@@ -1,7 +1,8 @@
 // The weights of a layer in the order in which the row kernels deal them out (conv_rows.glsl): whole texels for each loop
-// turn of each block, [block of channels][row phase][turn] x [input channel of the turn][channel of the block][tap].
+// turn of each block, [block of channels][row phase][turn] x [input channel of the turn][channel of the block][tap]; of
+// conv_lanes.glsl texels by lanes, [turn][texel of a lane][lane], a lane's floats being its channels'.
 // An invocation packs one texel; what no weight belongs to is zero. For minimal_filter.h a row's taps are replaced by the
-// weights at its points, those of a column phase after those of another.
+// weights at its points.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
@@ -21,18 +22,11 @@ float weightAt(uint at)
     return imageLoad(parameters, int(at)).x;
 }
 
-// Of the row of taps that begins at `row`; `point` counts through all its phases.
+// Of the row of three taps that begins at `row`.
 float weightOfPoint(uint row, uint point)
 {
-    uint taps = push.kernelWidth / push.columnPhases;
-    uint points = minimalPoints(taps);
-    uint phase = divide(point, points);
-    float w[3];
-    [[unroll]] for (uint i = 0; i < 3; ++i) {
-        uint column = phase + push.columnPhases * min(i, taps - 1);
-        w[i] = weightAt(row + (push.turned != 0 ? push.kernelWidth - 1 - column : column));
-    }
-    return minimalWeight(taps, point - phase * points, w[0], w[1], w[2]);
+    bool turned = push.turned != 0;
+    return minimalWeight(point, weightAt(row + (turned ? 2 : 0)), weightAt(row + 1), weightAt(row + (turned ? 0 : 2)));
 }
 
 void main()
@@ -58,7 +52,7 @@ void main()
         uint column = tap - row * push.rowTaps;
         if (push.turned != 0) {
             row = push.kernelHeight - 1 - row;
-            column = push.columnPhases == 0 ? push.kernelWidth - 1 - column : column;
+            column = push.minimal == 0 ? push.kernelWidth - 1 - column : column;
         }
         bool exists = inTurn < push.turnInputs && channel < push.outChannels;
         uint at = push.weightOffset + channel * push.weightStrideOut +
@@ -66,7 +60,7 @@ void main()
                   (firstTap + row * push.phases) * push.kernelWidth;
         at = exists ? at : push.weightOffset;
         float weight;
-        if (push.columnPhases == 0)
+        if (push.minimal == 0)
             weight = weightAt(at + column);
         else
             weight = weightOfPoint(at, column);

@@ -27,7 +27,7 @@
 #include "nn/divide.glsl"
 
 layout(local_size_x_id = 0) in;
-layout(constant_id = 1) const uint K = 16; // output channels of an invocation
+layout(constant_id = 1) const uint K = 16; // output channels of an invocation, or of its eight lanes (conv_lanes.glsl)
 layout(constant_id = 2) const uint NX = 8; // columns of the grid
 layout(constant_id = 3) const uint U = 1;  // input channels per loop turn; divides their number
 layout(constant_id = 4) const uint KH = 3; // kernel, stride, padding
@@ -55,10 +55,8 @@ layout(binding = 8, scalar) buffer ResultQuads { RESULT_QUAD resultQuads[]; };
 layout(push_constant, scalar) uniform Push { ConvRowsPush push; MORE_PUSH };
 
 const uint kLanes = 8; // lanes that share a weight load
-const bool MINIMAL = (FLAGS & kConvMinimal) != 0; // four columns at a time (minimal_filter.h)
-const uint PHASE_TAPS = KW / SW;                  // of a row that meet one column phase; whole under kConvMinimal
-const uint POINTS = PHASE_TAPS + 3;               // minimalPoints(PHASE_TAPS)
-const uint TAPS = KH * (MINIMAL ? SW * POINTS : KW) / PHASES; // weights of an input channel
+const bool MINIMAL = (FLAGS & kConvMinimal) != 0;                     // KW is 3, SW 1
+const uint TAPS = KH * (MINIMAL ? kMinimalPoints : KW) / PHASES; // weights of an input channel
 const uint TURN_TEXELS = (U * K * TAPS + 3) / 4; // of packed weights
 const uint LOADS = (TURN_TEXELS + kLanes - 1) / kLanes;
 

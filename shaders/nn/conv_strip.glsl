@@ -19,16 +19,16 @@ void addTaps(int weights, uint u)
 
 void addPoints(int weights, uint u)
 {
-    MinimalPoints points[KH * SW][COLUMN_TILES];
-    [[unroll]] for (uint i = 0; i < KH * SW; ++i)
+    MinimalPoints points[KH][COLUMN_TILES];
+    [[unroll]] for (uint ky = 0; ky < KH; ++ky)
         [[unroll]] for (uint tile = 0; tile < COLUMN_TILES; ++tile)
-            points[i][tile] = pointsOfWindow(i / SW, i % SW, tile);
+            points[ky][tile] = pointsOfWindow(ky, tile);
     [[unroll]] for (uint k = 0; k < K; ++k)
-        [[unroll]] for (uint i = 0; i < KH * SW; ++i)
-            [[unroll]] for (uint j = 0; j < POINTS; ++j) {
-                float weight = dealtWeight(weights, (u * K + k) * TAPS + i * POINTS + j);
+        [[unroll]] for (uint ky = 0; ky < KH; ++ky)
+            [[unroll]] for (uint j = 0; j < kMinimalPoints; ++j) {
+                float weight = dealtWeight(weights, (u * K + k) * TAPS + ky * kMinimalPoints + j);
                 [[unroll]] for (uint tile = 0; tile < COLUMN_TILES; ++tile)
-                    sum[k][tile * POINTS + j] += weight * points[i][tile].at[j];
+                    sum[k][tile * kMinimalPoints + j] += weight * points[ky][tile].at[j];
             }
 }
 

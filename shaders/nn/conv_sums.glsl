@@ -1,13 +1,12 @@
 // Sums of a convolution along rows: SUM_BLOCKS blocks, of a channel and a row of the result, of NX columns each. Behind
 // conv_rows.glsl and the `window` of input pixels that an invocation loads of one channel; the kernel defines SUM_BLOCKS.
 //
-// Under kConvMinimal the sums are those of minimal_filter.h: four columns are a tile, the taps of a row that meet the same
-// phase of the stride a correlation of their own. The phases add up at the same points.
+// Under kConvMinimal the sums are those of minimal_filter.h at the points of each four columns.
 #ifndef STRANDLIGHT_NN_CONV_SUMS_GLSL
 #define STRANDLIGHT_NN_CONV_SUMS_GLSL
 
 const uint COLUMN_TILES = MINIMAL ? NX / kMinimalTile : 1;
-const uint SUMS = MINIMAL ? COLUMN_TILES * POINTS : NX;
+const uint SUMS = MINIMAL ? COLUMN_TILES * kMinimalPoints : NX;
 
 float sum[SUM_BLOCKS][SUMS];
 
@@ -18,13 +17,13 @@ void clearSums()
             sum[i][n] = 0.0;
 }
 
-// Of a row of the window, a phase of the stride and a tile.
-MinimalPoints pointsOfWindow(uint row, uint phase, uint tile)
+// Of a row of the window and four columns of the result.
+MinimalPoints pointsOfWindow(uint row, uint tile)
 {
     float inputs[6];
-    [[unroll]] for (uint j = 0; j < POINTS; ++j)
-        inputs[j] = window[row][(tile * kMinimalTile + j) * SW + phase];
-    return minimalInputs(PHASE_TAPS, inputs);
+    [[unroll]] for (uint j = 0; j < 6; ++j)
+        inputs[j] = window[row][tile * kMinimalTile + j];
+    return minimalInputs(inputs);
 }
 
 // Sums of four columns from n on.
@@ -33,9 +32,9 @@ vec4 sumsOfFour(uint block, uint n)
     if (!MINIMAL)
         return vec4(sum[block][n], sum[block][n + 1], sum[block][n + 2], sum[block][n + 3]);
     MinimalPoints m;
-    [[unroll]] for (uint j = 0; j < POINTS; ++j)
-        m.at[j] = sum[block][n / kMinimalTile * POINTS + j];
-    return minimalResults(PHASE_TAPS, m);
+    [[unroll]] for (uint j = 0; j < kMinimalPoints; ++j)
+        m.at[j] = sum[block][n / kMinimalTile * kMinimalPoints + j];
+    return minimalResults(m);
 }
 
 void storeBlock(uint block, Target target, uint channel, uint y, uint x, float bias)

@@ -4,7 +4,7 @@
 // The nine taps of a tile of four by two pixels are a correlation of small tile and large window: 24 products at points
 // (minimal_filter.h along x, its like with the points 0, 1, -1, infinity along y) for 72. Sums stay at the points; the
 // taps are read off once a strip.
-// Lanes are channels a. A turn takes NX pixels of two rows: each lane loads and transforms those of its own channels, and
+// Lanes are channels a. A turn takes four pixels of each of TILES in two rows: each lane loads and transforms those of its own channels, and
 // one window of eight columns for all, which is handed round by shuffles.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
@@ -34,7 +34,7 @@ const bool WHOLE = (FLAGS & kConvWhole) != 0;
 const bool SHUFFLE = (FLAGS & kConvShuffle) != 0;
 const uint WINDOWS = SHUFFLE ? 1 : kLanes; // of a lane, of the eight of a turn
 const uint HALVES = kLanes / B;            // windows of eight columns in a turn, each with two tiles
-const uint TILES = 2 * HALVES;             // of a turn: NX / 4
+const uint TILES = 2 * HALVES;             // of a turn, along a row
 const uint POINTS = 6, ROW_POINTS = 4;     // along x and y
 const uint LEFT = (PW + 3) / 4;            // quads before the pixel that meets a window's first
 const uint SKIP = 4 * LEFT - PW;           // floats before the first that a tap reads
@@ -149,7 +149,7 @@ void main()
                     float inputs[6];
                     [[unroll]] for (uint j = 0; j < 6; ++j)
                         inputs[j] = quads[(SKIP + 4 * tile + j) / 4][(SKIP + 4 * tile + j) % 4];
-                    rows[tile][r] = minimalInputs(3, inputs);
+                    rows[tile][r] = minimalInputs(inputs);
                 }
             }
             [[unroll]] for (uint tile = 0; tile < 2; ++tile)

@@ -27,29 +27,18 @@ float nnExp(float x)
 const float kLog2E = 1.4426950408889634;
 const float kExp2C1 = 0.6931469670639855, kExp2C2 = 0.24022119722727053, kExp2C3 = 0.05550713274200602;
 const float kExp2C4 = 0.009675541396042944, kExp2C5 = 0.0013276471945264257;
-float nnExp2Negative(float y)
-{
-    precise float shifted = y + 12582912.0; // 1.5 * 2^23: the nearest integer is in the lowest bits
-    precise float k = shifted - 12582912.0;
-    float f = y - k;
-    float p = 1.0 + f * (kExp2C1 + f * (kExp2C2 + f * (kExp2C3 + f * (kExp2C4 + f * kExp2C5))));
-    float value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
-    // Whether y is in [-infinity, -100), by its bits: no NaN is.
-    bool tiny = floatBitsToUint(y) - 0xc2c80001u <= 0xff800000u - 0xc2c80001u;
-    return tiny ? 0.0 : value;
-}
-
-// The same of four or eight, each step of all before the next: alone it is a chain of a dozen operations that wait for
-// each other, and a CPU's scheduler holds no more than two of them.
+// Of four or eight at once, each step of all before the next: alone it is a chain of a dozen operations that wait for each
+// other, and a CPU's scheduler holds no more than two of them.
 vec4 exp2Scaled(vec4 y, vec4 shifted, vec4 p)
 {
     vec4 value = p * uintBitsToFloat((floatBitsToUint(shifted) << 23) + 0x3f800000u);
+    // Whether y is in [-infinity, -100), by its bits: no NaN is.
     bvec4 tiny = lessThanEqual(floatBitsToUint(y) - 0xc2c80001u, uvec4(0xff800000u - 0xc2c80001u));
     return mix(value, vec4(0.0), tiny);
 }
 vec4 nnExp2Negative(vec4 y)
 {
-    precise vec4 shifted = y + 12582912.0;
+    precise vec4 shifted = y + 12582912.0; // 1.5 * 2^23: the nearest integer is in the lowest bits
     precise vec4 k = shifted - 12582912.0;
     vec4 f = y - k;
     vec4 p = 1.0 + f * (kExp2C1 + f * (kExp2C2 + f * (kExp2C3 + f * (kExp2C4 + f * kExp2C5))));

@@ -15,7 +15,7 @@ STRANDLIGHT_SHARED_BEGIN
 // every turn of a loop blends what it carries with the lane mask.
 STRANDLIGHT_CONST(uint) kBenchChains = 14u;
 STRANDLIGHT_CONST(uint) kBenchUnroll = 16u;
-STRANDLIGHT_CONST(uint) kBenchExpChains = 12u;
+STRANDLIGHT_CONST(uint) kBenchExpChains = 16u; // by eights
 STRANDLIGHT_CONST(uint) kBenchExpUnroll = 4u;
 
 struct BenchLoopPush

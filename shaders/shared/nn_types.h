@@ -22,13 +22,13 @@ STRANDLIGHT_CONST(float) kRelativeLossFloor = 0.01f; // (radiance)^2
 STRANDLIGHT_CONST(uint) kConvBias = 1u;       // + bias[o]
 STRANDLIGHT_CONST(uint) kConvAccumulate = 2u; // + what the output holds already
 STRANDLIGHT_CONST(uint) kConvDerivative = 4u; // x (saved > 0 ? 1 : slope): back through a leaky relu
-STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights by subgroup shuffle; needs 8 lanes or more
+STRANDLIGHT_CONST(uint) kConvShuffle = 8u;    // weights or pixels by subgroup shuffle; needs 8 lanes or more
 
 STRANDLIGHT_CONST(uint) kConvTiles = 16u;     // over a list of active tiles of one image
 STRANDLIGHT_CONST(uint) kConvQuads = 32u;     // rows are whole texels of four floats
 STRANDLIGHT_CONST(uint) kConvContinue = 64u;  // sums begin with what the output holds; of kernels that fetch their input
+STRANDLIGHT_CONST(uint) kConvMinimal = 128u;  // three taps a row, stride 1, by minimal_filter.h
 STRANDLIGHT_CONST(uint) kConvWhole = 256u;    // of conv_weight_points.comp: whole turns, and tensors of the same size
-STRANDLIGHT_CONST(uint) kConvMinimal = 128u;  // taps by minimal_filter.h: 2 or 3 of a row meet each phase of the stride
 
 // Side of a TileList's square tiles, in pixels of the layer's output: a multiple of the register tiles of the row kernels.
 STRANDLIGHT_CONST(uint) kTileSide = 8u;
@@ -70,7 +70,7 @@ struct ConvPush
     float slope; // of the activation below zero; 1: no activation
 };
 
-// conv_rows.comp, conv_transpose_rows.comp and hair_conv.comp; kernel, stride and padding are specialisation constants.
+// conv_rows.comp, conv_transpose_rows.comp, hair_conv.comp and the kernels of conv_lanes.glsl; kernel, stride and padding are specialisation constants.
 struct ConvRowsPush
 {
     TensorView source;
@@ -81,7 +81,7 @@ struct ConvRowsPush
     uint outChannels;
     uint biasOffset;
     uint firstGroup; // of this dispatch: block of channels x row phases + phase
-    uint firstStrip; // this dispatch works on strips [firstStrip, endStrip)
+    uint firstStrip; // this dispatch works on strips [firstStrip, endStrip); of conv_lanes.glsl the first row of tiles
     uint endStrip;
     float slope;
 };
@@ -105,7 +105,7 @@ struct ConvPackPush
     uint kernelHeight;
     uint kernelWidth;
     uint paddingHeight;
-    uint columnPhases; // the stride, for minimal_filter.h; else 0
+    uint minimal;      // rowTaps are points
     uint turned;       // the kernel is turned about
 };
 

@@ -72,6 +72,7 @@ inline std::vector<ConvCase> channelConvCases()
         makeConvCase({1, 8, 12, 40}, 7, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
         makeConvCase({1, 14, 14, 12}, 29, {3, 3}, {1, 1}, {0, 2}, {0, 0}), // to 12x14 and 16x10
         makeConvCase({3, 33, 5, 8}, 2, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
+        makeConvCase({1, 16, 6, 8}, 5, {3, 3}, {1, 1}, {3, 3}, {0, 0}), // padding covers the kernel
         makeConvCase({1, 3, 12, 32}, 16, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
         makeConvCase({2, 7, 10, 16}, 31, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
     };

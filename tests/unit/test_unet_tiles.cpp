@@ -4,7 +4,9 @@
 
 #include <set>
 
+#include "compute_nn/conv_channels.hpp"
 #include "compute_nn/unet_tiles.hpp"
+#include "shaders/shared/minimal_filter.h"
 
 using namespace strandlight;
 
@@ -20,6 +22,19 @@ Pixels readByConv(const Pixels& y, const Conv2dDesc& d)
         for (int k = 0; k < int(d.kernel.w); ++k)
             x.insert(q * int(d.stride.w) - int(d.padding.w) + k);
     return x;
+}
+
+// The same at points, where four neighbours are computed from all that one of them reads.
+Pixels readByPoints(const Pixels& y, const Conv2dDesc& d)
+{
+    if (!fillsChannelTile(d.out))
+        return readByConv(y, d);
+    constexpr int kGroup = int(gpu::kMinimalTile);
+    Pixels groups;
+    for (const int q : y)
+        for (int i = 0; i < kGroup; ++i)
+            groups.insert(q - (q % kGroup + kGroup) % kGroup + i);
+    return readByConv(groups, d);
 }
 
 // Inputs q of y[stride q - padding + k] += w[k] x[q].
@@ -46,7 +61,7 @@ Needs followTaps(const UNetDesc& net, int p)
     Needs n;
     n.up.resize(net.levels());
     n.skip.resize(net.levels() + 1);
-    n.up[0] = readByConv({p}, net.last());
+    n.up[0] = readByPoints({p}, net.last());
     for (std::uint32_t l = 0; l < net.levels(); ++l) {
         n.skip[l] = n.up[l];
         (l + 1 < net.levels() ? n.up[l + 1] : n.skip[l + 1]) =
@@ -54,7 +69,7 @@ Needs followTaps(const UNetDesc& net, int p)
     }
     for (std::uint32_t l = net.levels(); l > 0; --l)
         n.skip[l - 1].merge(readByConv(n.skip[l], net.encoder(l)));
-    n.input = net.head > 0 ? readByConv(n.skip[0], net.encoder(0)) : n.skip[0];
+    n.input = net.head > 0 ? readByPoints(n.skip[0], net.encoder(0)) : n.skip[0];
     return n;
 }
 
@@ -80,7 +95,7 @@ void checkReach(const TileReach& reach, const Pixels& needed, int p)
 
 TEST_CASE("U-Net tiles: every layer's tiles hold what an output pixel needs, and little more")
 {
-    for (const UNetDesc& net : {UNetDesc{}, hairUNet(), benchmarkUNet()}) {
+    for (const UNetDesc& net : {UNetDesc{}, UNetDesc{.out = 16}, hairUNet(), benchmarkUNet()}) {
         const UNetReach reach = unetReach(net);
         for (int p = 2048; p < 2048 + 64; ++p) { // far from the border: all phases of a tile
             CAPTURE(p);
