@@ -69,6 +69,16 @@ constexpr bool dividesTiles(std::span<const Case> cases)
 }
 static_assert(dividesTiles(kCpu) && dividesTiles(kGpu));
 
+// Over a list of tiles a workgroup of conv_lanes.glsl takes a whole one.
+constexpr bool spansTiles(std::span<const ChannelCase> cases)
+{
+    for (const ChannelCase& c : cases)
+        if (c.tile.columns * (c.shape.transposed ? c.shape.stride.w : 1) != gpu::kTileSide)
+            return false;
+    return true;
+}
+static_assert(spansTiles(kCpuChannels));
+
 } // namespace
 
 const RowTile* findRowTile(bool cpu, const RowShape& shape, std::uint32_t gridWidth,

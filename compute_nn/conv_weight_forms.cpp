@@ -81,8 +81,8 @@ bool hasPointForm(const Correlation& c)
 WeightForm pointForm(std::uint32_t shuffleFlag, const Correlation& c)
 {
     WeightForm form;
-    // Lanes are channels: let the tensor of more be the small one. Its like by the kernel turned
-    // about, the other way round.
+    // Lanes are channels of the small tensor; where it would leave them empty the two change
+    // places, with the kernel turned about.
     form.turned = c.small.desc.c < 8 && c.large.desc.c > c.small.desc.c;
     const TensorDesc& small = form.turned ? c.large.desc : c.small.desc;
     const TensorDesc& large = form.turned ? c.small.desc : c.large.desc;

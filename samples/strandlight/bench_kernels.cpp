@@ -78,8 +78,9 @@ int benchKernels(const BenchOptions& o)
         {"multiply_add_gflops", ceilings.gflops()},
         {"multiply_add", "chains of a*b+c in registers, best run"},
         {"of_multiply_add", "median over rounds in which a case and the multiply-adds take turns"},
-        {"gflops", "operations of the plain sum, whatever a kernel takes for it: where lanes are "
-                   "channels (CPU devices), three taps a row take half the products"},
+        {"gflops",
+         "operations of the plain sum, whatever a kernel takes for it: on CPU devices 3x3 of "
+         "stride 1 takes half the products, its weight gradient a third"},
         {"exp_flops", ceilings.flopsOfExp},
         {"exp", "multiply-adds' flops in the time of one exponential of the network kernels"},
         {"triad_gb_per_s", ceilings.gigabytes()},

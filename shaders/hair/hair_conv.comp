@@ -2,7 +2,7 @@
 //
 // A workgroup owns a tile of the result. It fetches each pixel that the tile reads once into shared memory, where its
 // strips find their windows: first the planes of the features, then the rest. From there on it is conv_rows.comp, whose
-// order of sums and so whose bits it has. The two parts are unrolled: a CPU device runs both sides of a branch.
+// order of sums and so whose bits it has; at points (minimal_filter.h) those of conv_channels.comp. The two parts are unrolled: a CPU device runs both sides of a branch.
 // VARIANT half RESULT_HALF
 #version 460
 #extension GL_EXT_control_flow_attributes : require

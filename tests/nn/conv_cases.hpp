@@ -73,6 +73,8 @@ inline std::vector<ConvCase> channelConvCases()
         makeConvCase({1, 14, 14, 12}, 29, {3, 3}, {1, 1}, {0, 2}, {0, 0}), // to 12x14 and 16x10
         makeConvCase({3, 33, 5, 8}, 2, {3, 3}, {1, 1}, {1, 1}, {0, 0}),
         makeConvCase({1, 16, 6, 8}, 5, {3, 3}, {1, 1}, {3, 3}, {0, 0}), // padding covers the kernel
+        makeConvCase({3, 9, 11, 160}, 8, {3, 3}, {1, 1}, {1, 1},
+                     {0, 0}), // strips end inside images
         makeConvCase({1, 3, 12, 32}, 16, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
         makeConvCase({2, 7, 10, 16}, 31, {4, 4}, {2, 2}, {1, 1}, {0, 0}),
     };
@@ -163,8 +165,8 @@ inline ConvCase resizedConvCase(const ConvCase& prototype, std::uint32_t index)
 inline std::vector<ConvCase> randomConvCases(std::uint32_t count)
 {
     std::vector<ConvCase> fast = rowConvCases();
-    for (const ConvCase& c : quadConvCases())
-        fast.push_back(c);
+    for (const std::vector<ConvCase>& more : {quadConvCases(), channelConvCases()})
+        fast.insert(fast.end(), more.begin(), more.end());
     std::vector<ConvCase> cases;
     for (std::uint32_t i = 0; i < count; ++i)
         cases.push_back(i % 5 == 4 ? resizedConvCase(fast[i / 5 % fast.size()], i)

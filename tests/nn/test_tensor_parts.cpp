@@ -130,10 +130,10 @@ Results mixtureValues(Context& device, const SgMixtureDesc& desc)
 }
 
 // A layer over every second tile of a picture, on top of zeros.
-Results tileValues(Context& device)
+Results tileValues(Context& device, std::uint32_t width)
 {
     RenderGraph graph(device);
-    const TensorDesc x{1, 24, 40, 44};
+    const TensorDesc x{1, 24, 40, width};
     const Conv2dDesc conv{.in = 24, .out = 23};
     const TensorDesc y = conv.output(x);
     const Extent2 grid = tileGrid(y);
@@ -174,13 +174,14 @@ TEST_CASE("tensor parts: a binding of 128 KiB gives what a larger one gives")
     Context narrow = narrowContext();
     // By images; by channels of the result, by those of the source, by both.
     const std::pair<TensorDesc, std::uint32_t> cases[] = {
-        {{5, 3, 24, 25}, 5}, {{2, 3, 40, 41}, 24}, {{1, 24, 40, 41}, 3}, {{2, 24, 40, 37}, 23}};
+        {{5, 3, 24, 25}, 5},   {{2, 3, 40, 41}, 24},  {{1, 24, 40, 41}, 3},
+        {{2, 24, 40, 37}, 23}, {{2, 24, 40, 40}, 24}, {{1, 24, 40, 48}, 16}};
     for (const auto& [x, out] : cases) {
         const auto whole = layerValues(context(), x, out), parts = layerValues(narrow, x, out);
         for (std::size_t i = 0; i < whole.size(); ++i) {
             CAPTURE(i);
             CAPTURE(shapeText(x));
-            CHECK_LE(relativeError(parts[i], whole[i]), 1e-6); // sums in another order
+            CHECK_LE(relativeError(parts[i], whole[i]), 2e-6); // sums in another order
         }
     }
     CHECK_EQ(narrow.validationMessages(), 0);
@@ -206,18 +207,23 @@ TEST_CASE("tensor parts: losses, mixtures and predicted kernels have the bits of
 TEST_CASE("tensor parts: a list of tiles over parts of the channels")
 {
     Context narrow = narrowContext();
-    const Results parts = tileValues(narrow), whole = tileValues(context());
-    CHECK_LE(relativeError(parts[0], whole[0]), 1e-6); // sums in another order
-    CHECK_EQ(std::count(parts[0].begin(), parts[0].end(), 0.0f),
-             std::count(whole[0].begin(), whole[0].end(), 0.0f));
+    for (const std::uint32_t width : {44u, 48u}) {
+        const Results parts = tileValues(narrow, width), whole = tileValues(context(), width);
+        CHECK_LE(relativeError(parts[0], whole[0]), 1e-6); // sums in another order
+        CHECK_EQ(std::count(parts[0].begin(), parts[0].end(), 0.0f),
+                 std::count(whole[0].begin(), whole[0].end(), 0.0f));
+    }
     CHECK_EQ(narrow.validationMessages(), 0);
 }
 
 TEST_CASE("tensor parts: a NaN is found in whichever part")
 {
     Context narrow = narrowContext();
-    constexpr std::uint32_t kCount = 100000, kFirst = 77;
-    for (const std::uint32_t place : {77u, 32780u, 65536u, 99999u, 76u, 100000u}) {
+    constexpr std::uint32_t kCount = 100000;
+    const std::pair<std::uint32_t, std::uint32_t> cases[] = {
+        {77, 77}, {77, 32780}, {77, 65536}, {77, 99999}, {77, 76},    {77, 100000},
+        {76, 76}, {76, 32779}, {76, 99999}, {76, 75},    {76, 100000}}; // of 76 whole quads
+    for (const auto& [first, place] : cases) {
         Parameters parameters(
             narrow, UNetDesc{.in = 1, .out = 1, .head = 0, .down = {2}, .up = {2}}.parameters(), 1);
         RenderGraph graph(narrow);
@@ -226,11 +232,12 @@ TEST_CASE("tensor parts: a NaN is found in whichever part")
         values[place] = NAN;
         ids.clearGradients(graph);
         ids.checkFinite(graph, "values", graph.uploadBuffer("v", std::span<const float>(values)),
-                        kFirst, kCount - kFirst, 2.0f);
+                        first, kCount - first, 2.0f);
         addAdamPass(graph, ids, {}, 1);
         graph.run();
+        CAPTURE(first);
         CAPTURE(place);
-        CHECK_EQ(parameters.report().stepsSkipped, place >= kFirst && place < kCount ? 1u : 0u);
+        CHECK_EQ(parameters.report().stepsSkipped, place >= first && place < kCount ? 1u : 0u);
     }
 }
 

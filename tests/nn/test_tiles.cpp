@@ -95,6 +95,7 @@ TEST_CASE("tiles: active ones have the bits of the whole picture, the others are
     checkTiles(conv2dForward, Conv2dDesc{.in = 5, .out = 19}, {1, 5, 21, 83});
     checkTiles(conv2dForward, Conv2dDesc{.in = 5, .out = 16}, {1, 5, 30, 80});
     checkTiles(conv2dForward, Conv2dDesc{.in = 3, .out = 24}, {1, 3, 24, 88});
+    checkTiles(conv2dForward, Conv2dDesc{.in = 1, .out = 272}, {1, 1, 24, 16}); // two dispatches
     checkTiles(conv2dForward, Conv2dDesc{.in = 3, .out = 16, .kernel = {4, 4}, .stride = {2, 2}},
                {1, 3, 48, 160});
     checkTiles(convTranspose2dForward,
