@@ -1,5 +1,5 @@
 // Transposed convolution, and the data gradient of a convolution, on a CPU device, lanes being output channels
-// (conv_lanes.glsl). The grid and its phases are those of conv_transpose_rows.comp; an invocation computes all of them.
+// (conv_lanes.glsl). An invocation computes all phases of its blocks (transpose_phases.glsl).
 //
 // Sums are taken in the order of conv_transpose_rows.comp and have its bits.
 #version 460
@@ -12,13 +12,10 @@
 #define RESULT_WIDE
 #include "nn/conv_rows.glsl"
 
+#include "nn/transpose_phases.glsl"
+
 layout(constant_id = 12) const uint TILE_ROWS = 6;
 
-// Input rows and columns that reach a block, before and behind its own. The host keeps the padding below the kernel.
-const uint UP = (KH - 1 - PH) / SH;
-const uint DOWN = (PH + SH - 1) / SH;
-const uint LEFT = (KW - 1 - PW) / SW;
-const uint RIGHT = (PW + SW - 1) / SW;
 const uint INPUT_ROWS = UP + TILE_ROWS + DOWN;
 const uint WW = LEFT + NX + RIGHT;
 const uint RESULT_ROWS = TILE_ROWS * SH;
@@ -37,14 +34,11 @@ void addTaps(uint u)
         [[unroll]] for (uint y = 0; y < RESULT_ROWS; ++y)
             [[unroll]] for (uint t = 0; t < TAPS; ++t) {
                 uint ky = t / KW, kx = t % KW;
-                if ((ky + (SH - 1) * PH) % SH != y % SH)
+                if (phaseOfTapY(ky) != y % SH)
                     continue;
-                // Which row and column of the window meets the pixel's phase by this tap.
-                uint fromY = y / SH + (y % SH + PH + UP * SH - ky) / SH;
-                uint phaseX = (kx + (SW - 1) * PW) % SW;
-                uint fromX = (phaseX + PW + LEFT * SW - kx) / SW;
                 [[unroll]] for (uint n = 0; n < NX; ++n)
-                    sum[v][y][n * SW + phaseX] += weightOf(u, v, t) * pixel[fromY][fromX + n];
+                    sum[v][y][n * SW + phaseOfTapX(kx)] +=
+                        weightOf(u, v, t) * pixel[y / SH + rowOfTap(ky)][columnOfTap(kx) + n];
             }
 }
 

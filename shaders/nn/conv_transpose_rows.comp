@@ -1,10 +1,8 @@
 // Transposed convolution, and the data gradient of a convolution, by a sliding window along rows.
 // Dumoulin and Visin. A guide to convolution arithmetic for deep learning. 2016
 //
-// A row and column of the grid is a block of SH x SW pixels of the result, one of each phase (y mod SH, x mod SW). Tap
-// (ky,kx) of input pixel (r,c) lands on pixel (r SH - PH + ky, c SW - PW + kx), so each pixel meets the taps of its phase
-// only, and no lane multiplies by a structural zero. An invocation computes all column phases, and all row phases or,
-// where PHASES is SH, one of them: fewer sums for as many taps each. Otherwise as conv_rows.comp.
+// An invocation computes all column phases of its blocks (transpose_phases.glsl), and all row phases or, where PHASES is
+// SH, one of them: fewer sums for as many taps each. Otherwise as conv_rows.comp.
 // VARIANT half SOURCE_HALF RESULT_HALF
 // VARIANT from_half SOURCE_HALF
 // VARIANT wide RESULT_WIDE
@@ -16,12 +14,8 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 
 #include "nn/conv_rows.glsl"
+#include "nn/transpose_phases.glsl"
 
-// Input rows and columns that reach a block, before and behind its own. The host keeps the padding below the kernel.
-const uint UP = (KH - 1 - PH) / SH;
-const uint DOWN = (PH + SH - 1) / SH;
-const uint LEFT = (KW - 1 - PW) / SW;
-const uint RIGHT = (PW + SW - 1) / SW;
 const uint ROWS = SH / PHASES; // of the result
 const uint ROW_TAPS = KH / PHASES;
 const uint WH = PHASES == SH ? ROW_TAPS : UP + 1 + DOWN;
@@ -55,14 +49,11 @@ void main()
             [[unroll]] for (uint k = 0; k < K; ++k)
                 [[unroll]] for (uint t = 0; t < TAPS; ++t) {
                     float weight = dealtWeight(weights, (u * K + k) * TAPS + t);
-                    // The phase this tap lands on, and which row and column of the window it comes from.
                     uint ky = t / KW, kx = t % KW;
-                    uint phaseY = PHASES == SH ? 0 : (ky + (SH - 1) * PH) % SH;
-                    uint fromY = PHASES == SH ? ROW_TAPS - 1 - ky : (phaseY + PH + UP * SH - ky) / SH;
-                    uint phaseX = (kx + (SW - 1) * PW) % SW;
-                    uint fromX = (phaseX + PW + LEFT * SW - kx) / SW;
+                    uint y = PHASES == SH ? 0 : phaseOfTapY(ky);
+                    uint row = PHASES == SH ? ROW_TAPS - 1 - ky : rowOfTap(ky);
                     [[unroll]] for (uint n = 0; n < NX; ++n)
-                        sum[k][phaseY][n * SW + phaseX] += weight * window[fromY][fromX + n];
+                        sum[k][y][n * SW + phaseOfTapX(kx)] += weight * window[row][columnOfTap(kx) + n];
                 }
             plane += planeLoads;
         }
