@@ -3,8 +3,8 @@
 //
 // A workgroup of eight lanes computes K channels, K / 8 of a lane, over a tile of TILE_ROWS x NX of the grid. Per input
 // channel each lane loads one row of eight, and the weights of its own channels; the rows are handed round by shuffles.
-// conv_rows.comp, whose lanes are strips of pixels, hands round the weights instead and loads every pixel once for each
-// tap row: more shuffles and twice the loads, in twice the code.
+// conv_rows.comp, whose lanes are strips of pixels, hands round the weights instead, of which there are more, and loads
+// every pixel once for each tap row; its code is twice as long.
 // Without shuffles each lane loads all rows.
 #ifndef STRANDLIGHT_NN_CONV_LANES_GLSL
 #define STRANDLIGHT_NN_CONV_LANES_GLSL
