@@ -78,15 +78,8 @@ TensorId addChannelConvPass(RenderGraph& graph, std::string_view name, const Con
     checkTripBudget("conv_channels", plan.turns + 1);
 
     PassBuilder pass = graph.addComputePass(name);
-    const Binding from = source.binding(pass.read(source.buffer));
-    const BufferId parameters = pass.read(weights.block);
-    const Binding into = result.binding(pass.write(result.buffer));
-    const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
-    const Binding packed =
-        packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
-    gpu::ConvRowsPush push =
-        rowPush(source.desc, result, epilogue.savedView, weights, epilogue.slope);
-    push.source = source.view();
+    auto [from, packed, into, parameters, to, epilogue, push] =
+        bindRows(graph, pass, name, conv, plan, source, weights, result);
     const std::uint32_t flags =
         epilogue.flags | gpu::kConvQuads | (conv.tiles ? gpu::kConvTiles : 0);
     std::vector<std::uint32_t> constants = rowConstants(conv, plan, kConvLanes, flags);
@@ -94,7 +87,7 @@ TensorId addChannelConvPass(RenderGraph& graph, std::string_view name, const Con
     const KernelBlob& kernel =
         conv.transposed ? kernels::conv_transpose_channels : kernels::conv_channels;
 
-    const TensorId done = result.as(std::get<BufferId>(into.resource));
+    const TensorId done = result.as(to);
     if (conv.tiles) {
         STRANDLIGHT_ASSERT_EQ(result.desc.n, 1u);
         const BufferId tiles = pass.read(conv.tiles->tiles);

@@ -59,4 +59,20 @@ BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view nam
     return packed;
 }
 
+RowBindings bindRows(RenderGraph& graph, PassBuilder& pass, std::string_view name,
+                     const ConvPass& conv, const RowPlan& plan, const TensorId& source,
+                     const LayerWeights& weights, const TensorId& result)
+{
+    const Binding from = source.binding(pass.read(source.buffer));
+    const BufferId parameters = pass.read(weights.block);
+    const BufferId to = pass.write(result.buffer);
+    const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
+    const BufferId packed =
+        packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
+    gpu::ConvRowsPush push =
+        rowPush(source.desc, result, epilogue.savedView, weights, epilogue.slope);
+    push.source = source.view();
+    return {from, packed, result.binding(to), parameters, to, epilogue, push};
+}
+
 } // namespace strandlight

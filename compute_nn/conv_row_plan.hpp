@@ -55,4 +55,16 @@ BufferId packWeights(RenderGraph& graph, PassBuilder& pass, std::string_view nam
                      const ConvPass& conv, const RowPlan& plan, const LayerWeights& weights,
                      BufferId parameters, std::uint32_t outChannels);
 
+// What every such pass over tensors binds and pushes; weights are packed on the way.
+struct RowBindings
+{
+    Binding source, packed, result;
+    BufferId parameters, resultBuffer;
+    ConvEpilogue epilogue;
+    gpu::ConvRowsPush push; // without the last strip
+};
+RowBindings bindRows(RenderGraph& graph, PassBuilder& pass, std::string_view name,
+                     const ConvPass& conv, const RowPlan& plan, const TensorId& source,
+                     const LayerWeights& weights, const TensorId& result);
+
 } // namespace strandlight

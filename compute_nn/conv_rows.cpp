@@ -60,15 +60,8 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     checkTripBudget("conv_rows", plan.turns + 1);
 
     PassBuilder pass = graph.addComputePass(name);
-    const Binding from = source.binding(pass.read(source.buffer));
-    const BufferId parameters = pass.read(weights.block);
-    const BufferId to = pass.write(result.buffer);
-    const ConvEpilogue epilogue = bindEpilogue(graph, pass, name, conv, from, result);
-    const Binding packed =
-        packWeights(graph, pass, name, conv, plan, weights, parameters, result.desc.c);
-    gpu::ConvRowsPush push =
-        rowPush(source.desc, result, epilogue.savedView, weights, epilogue.slope);
-    push.source = source.view();
+    auto [from, packed, into, parameters, to, epilogue, push] =
+        bindRows(graph, pass, name, conv, plan, source, weights, result);
     push.endStrip = plan.strips;
     const bool quads = hasQuads(conv, tile, source, result);
     const std::uint32_t flags =
@@ -79,7 +72,6 @@ TensorId addRowConvPass(RenderGraph& graph, std::string_view name, const ConvPas
     // Without quads nothing reads these two, and the tensors may not be whole texels.
     const Binding fromQuads = quads ? from : packed;
     const Binding savedQuads = quads ? epilogue.saved : packed;
-    const Binding into = result.binding(to);
     const Binding last = octets ? into : epilogue.guard; // heldQuads, or the guard
 
     if (conv.tiles) { // cut by groups, as if all tiles were active
